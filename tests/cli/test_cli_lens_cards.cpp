@@ -282,6 +282,12 @@ void test_settings_of_names(void **) {
     assert_true(key.focal_mm == LENSPROF_UNKNOWN && key.aperture == 8.0);
     key = of("holiday 2023/DSC_24-70.jpg");
     assert_true(key.focal_mm == LENSPROF_UNKNOWN && key.aperture == LENSPROF_UNKNOWN);
+    for (const char *number : {"24mm/f01.tif", "24mm_f02.tif", "f003_24mm.tif"}) {  // of a picture
+        key = of(number);
+        assert_true(key.focal_mm == 24.0 && key.aperture == LENSPROF_UNKNOWN);
+    }
+    assert_true(of("f0.95.tif").aperture == 0.95 && of("24mm_f4_2.tif").aperture == 4.0
+                && of("24mm_f10.tif").aperture == 10.0 && of("f0.tif").aperture == LENSPROF_UNKNOWN);
     key = of("Lens--0mm--2.8.CR2");
     assert_true(key.focal_mm == LENSPROF_UNKNOWN);
 }

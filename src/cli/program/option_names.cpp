@@ -13,6 +13,7 @@ std::string option_of(const std::string &name) {
         {"crop_factor", "--key crop-factor=NUMBER"},
         {"dark", "--dark"},
         {"database", "--db FILE"},
+        {"distance", "--key distance"},
         {"doubtful", "`lensprof apply --key doubtful=yes`"},
         {"ev", "--ev"},
         {"exposure_keep", "--set exposure=keep"},

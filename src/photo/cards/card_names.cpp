@@ -55,9 +55,9 @@ bool read_distance_folder(const std::string &name, lensprof_profile_key &key) {
 // One word of a name; false if names of settings have no such word.
 bool read_word(const std::string &word, lensprof_profile_key &key) {
     static const std::regex focal(R"((\d+(?:\.\d+)?)mm)", std::regex::icase),
-        aperture(R"(f\W?(\d+(?:\.\d+)?))", std::regex::icase), distance(R"((\d+(?:\.\d+)?)m)", std::regex::icase),
-        infinity("inf|infinity", std::regex::icase),
-        other(R"(\d+|card|flat|white|wall|sky|img|image|dsc|dscf|shot|raw|field)", std::regex::icase);
+        aperture(R"(f\W?((?:[1-9]\d*|0(?=\.))(?:\.\d+)?))", std::regex::icase),
+        distance(R"((\d+(?:\.\d+)?)m)", std::regex::icase), infinity("inf|infinity", std::regex::icase),
+        other(R"(\d+|f0\d+|card|flat|white|wall|sky|img|image|dsc|dscf|shot|raw|field)", std::regex::icase);
     std::smatch number;
     if (std::regex_match(word, number, focal)) return fill(key.focal_mm, positive(number[1])), true;
     if (std::regex_match(word, number, aperture)) return fill(key.aperture, positive(number[1])), true;

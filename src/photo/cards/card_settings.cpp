@@ -37,6 +37,7 @@ void replace_by_options(const StoreOptions &o, lensprof_profile_key &key) {
 }
 
 struct Read {
+    lensprof_profile_key stated;  // by the picture, its name and a table
     std::optional<CardPicture> picture;
     std::string failure;
 };
@@ -61,6 +62,7 @@ std::vector<Read> read_all(const std::vector<NamedPicture> &named, const CardOpt
         lensprof_profile_key &key = one.picture->metadata.key;
         complete_by_names(one.picture->file, key);
         if (table) table->apply(one.picture->file, key);
+        one.stated = key;
         replace_by_options(o.store, key);
     }
     return read;
@@ -204,6 +206,30 @@ void take_numbers(CardSetting &setting) {
     }
 }
 
+// Options that replace what pictures state differently: they may make one setting of several.
+void note_replaced(const std::vector<Read> &read, Events &events) {
+    struct Number {
+        double lensprof_profile_key::*field;
+        bool (*is_one)(double, double);
+        const char *option, *name;
+    };
+    for (const Number &number : {Number{&lensprof_profile_key::focal_mm, is_same_focal, "focal", "focal length"},
+                                 {&lensprof_profile_key::aperture, is_same_aperture, "aperture", "aperture"},
+                                 {&lensprof_profile_key::distance_m, is_same_distance, "distance", "distance"}}) {
+        std::vector<const Read *> replaced;
+        for (const Read &one : read) {
+            if (!one.picture || one.stated.*number.field == LENSPROF_UNKNOWN) continue;
+            if (!number.is_one(one.stated.*number.field, one.picture->metadata.key.*number.field))
+                replaced.push_back(&one);
+        }
+        if (replaced.empty()) continue;
+        const Read &first = *replaced.front();
+        events.note("", option_name(number.option) + " replaces the " + number.name + " of "
+                            + counted(replaced.size(), "picture") + ", such as that of " + first.picture->file + " ("
+                            + describe_setting(first.stated, first.picture->file) + ")");
+    }
+}
+
 // Files with the same bytes as an earlier one.
 class Copies {
 public:
@@ -220,8 +246,8 @@ private:
 
 std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Copies &copies) {
     try {
-        if (!read.picture)
-            return file_bytes(named.file) ? read.failure : named.file + ": is empty (0 bytes); copy it again";
+        const bool is_empty = is_regular_file(named.file) && !file_bytes(named.file);
+        if (!read.picture) return is_empty ? named.file + ": is empty (0 bytes); copy it again" : read.failure;
         if (const std::string first = copies.earlier(named); !first.empty()) return named.file + ": a copy of " + first;
     } catch (const Failure &failure) {  // not there any more
         return failure.what();
@@ -270,6 +296,7 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     std::vector<CardPicture> pictures;
     const std::vector<Read> read = read_all(named, o, table, events);
     events.clear();
+    note_replaced(read, events);
     Copies copies;
     for (size_t i = 0; i < named.size(); i++) {
         settings.has_folders |= named[i].in_folder;
