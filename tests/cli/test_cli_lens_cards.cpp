@@ -23,10 +23,11 @@ struct Card {
     double k1 = -0.4, texture = 0.0;
     uint64_t seed = 7;
     bool clipped = false;
-    double light = 0.0;   // brighter in the middle: exp(-light r^2)
-    double scene = 0.0;   // contrast of things of 20 px on it
-    double counts = 0.0;  // float samples, of which so many are full scale
-    double black = 0.0;   // without light, share of full scale
+    double light = 0.0;                  // brighter in the middle: exp(-light r^2)
+    double scene = 0.0;                  // contrast of things of 20 px on it
+    double counts = 0.0;                 // float samples, of which so many are full scale
+    double black = 0.0;                  // without light, share of full scale
+    double middle = 0.5, noise = 0.002;  // shares of full scale
 };
 
 // A value per square of 20 px, 0..1.
@@ -42,13 +43,13 @@ std::string shoot(const std::string &name, const Card &card) {
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
             const double r2 = lensprof_vignetting_r2(&falloff, width, height, x, y, nullptr);
-            double light = (card.clipped ? 1.3 : 0.5) * lensprof_vignetting_eval(&falloff, r2, nullptr);
+            double light = (card.clipped ? 1.3 : card.middle) * lensprof_vignetting_eval(&falloff, r2, nullptr);
             light *= std::exp(-card.light * r2);
             light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
             light *= 1.0 - card.scene * thing_at(x, y);
             for (uint32_t c = 0; c < 3; c++) {
                 const double value =
-                    card.black + (1.0 - card.black) * std::clamp(light + 0.002 * lp_normal(&random), 0.0, 1.0);
+                    card.black + (1.0 - card.black) * std::clamp(light + card.noise * lp_normal(&random), 0.0, 1.0);
                 if (card.counts > 0.0)
                     *count++ = static_cast<float>(card.counts * value);
                 else
@@ -628,6 +629,87 @@ void test_a_dark_frame_in_the_folder(void **) {
     assert_true(contains(run_words(flat_of({folder})).out, "give it with --dark"));
 }
 
+// The shell gives the first dark frame of a pattern to the option, and the others as cards.
+void test_dark_frames_of_a_pattern(void **) {
+    Card card{24.0, 2.8};
+    card.black = 0.06;
+    const std::string file = shoot("pattern/card.tif", card);
+    card.light = 1e4;
+    Words dark;
+    for (uint64_t n = 1; n < 4; n++) {
+        card.seed = n;
+        dark.push_back(shoot(format("pattern/black%d.tif", static_cast<int>(n)), card));
+    }
+    assert_refused(usage, flat_of({file}, Words{"--dark"} + dark), {"black2.tif", "repeat --dark for each file"});
+    const Json json = json_of(flat_of({file}, {"--dark", dark[0], "--dark", dark[1], "--dark", dark[2], "--json"}));
+    assert_float_equal(json["corner"].get<double>(), 0.63, 0.01);
+}
+
+void test_no_such_file(void **) {
+    for (const char *name : {"nothing", "nothing.tif", "nothing/"}) {
+        assert_refused(unreadable, flat_of({in_folder(name)}), {name, "No such file"});
+        assert_false(contains(run_words(flat_of({in_folder(name)})).err, "empty"));
+    }
+    const Outcome among = run_words(flat_of({shoot("one.tif", Card{24.0, 2.8}), in_folder("nothing.tif")}));
+    assert_true(contains(among.out, "left out  1 of 2 pictures") && contains(among.out, "No such file"));
+    save_text(in_folder("empty.tif"), "");
+    assert_refused(unreadable, flat_of({in_folder("empty.tif")}), {"empty.tif", "is empty"});
+}
+
+size_t lines_with(const std::string &text, const std::string &part) {
+    std::istringstream lines(text);
+    size_t count = 0;
+    for (std::string line; std::getline(lines, line);) count += contains(line, part) ? 1 : 0;
+    return count;
+}
+
+// Notes that differ in a number are one line, with the largest; the JSON has all of them. Quiet prints none.
+void test_notes_of_settings(void **) {
+    const std::string lens = make_lens("noted"), xml = in_folder("noted.xml");
+    const Words words = flat_of({lens}, {"-o", xml, "--key", "crop-factor=1"});
+    const std::string table = must_exit(done, words);
+    assert_int_equal(lines_with(table, "[flat_black_level]"), 1);
+    const Json json = json_of(words + Words{"--json"});
+    size_t settings = 0;
+    for (const Json &setting : json["settings"])
+        settings += contains(setting["result"]["findings"].dump(), "flat_black_level") ? 1 : 0;
+    assert_true(settings > 1);
+    assert_true(
+        contains(table, format("note      24 mm, f/2.8, the largest of %zu settings: the black level", settings)));
+    const std::string stated = must_exit(done, words + Words{"--black", "1"});
+    assert_int_equal(lines_with(stated, "does not hold its black and white level"), 1);
+    for (const Words &pictures : {Words{lens}, Words{lens + "/24_2.8_0.tif"}}) {
+        const Outcome quiet = run_words(flat_of(pictures, {"-q"}));
+        assert_int_equal(quiet.code, done);
+        assert_true(quiet.err.empty() && lines_with(quiet.out, "note ") == 0);
+        assert_true(lines_with(must_exit(done, flat_of(pictures)), "note ") > 0);
+    }
+}
+
+// Dark corners above a known black level are measured, not continued from the middle.
+void test_a_dim_card(void **) {
+    Card card{24.0, 2.8};
+    card.k1 = -0.78, card.middle = 0.03, card.noise = 0.0002;
+    const std::string file = shoot("dim.tif", card);
+    const Json known = json_of(flat_of({file}, {"--json", "--black", "0"})),
+               unknown = json_of(flat_of({file}, {"--json"}));
+    const Json &k = known["vignetting"]["k"][0];
+    assert_float_equal(1.0 + k[0].get<double>() + k[1].get<double>() + k[2].get<double>(), 0.25, 0.002);
+    assert_false(contains(known["findings"].dump(), "\"flat_black\""));
+    assert_true(contains(unknown["findings"].dump(), "\"flat_black\""));
+    const Json above = json_of(flat_of({file}, {"--json", "--black", "0", "--fit", "ignore-below=0.0078"}));
+    assert_true(contains(above["findings"].dump(), "\"flat_black\""));
+}
+
+// An option for all pictures may make one setting of several.
+void test_replaced_settings(void **) {
+    const std::string lens = make_lens("replaced");
+    assert_true(contains(run_words(flat_of({lens}, {"--aperture", "4"})).err,
+                         "note: --aperture replaces the aperture of 12 pictures, such as that of " + lens));
+    const Outcome same = run_words(flat_of({lens + "/24_2.8_0.tif"}, {"--aperture", "2.8", "--focal", "24"}));
+    assert_true(same.code == done && !contains(same.err, "replaces"));
+}
+
 // What Lensfun lacks prevents its file alone, and the option that states it is named.
 void test_what_can_be_written_is(void **) {
     Card card{LENSPROF_UNKNOWN, 2.8};
@@ -750,6 +832,11 @@ int main() {
         CLI_TEST(test_units_of_levels),
         CLI_TEST(test_dark_frames_in_counts_of_the_file),
         CLI_TEST(test_a_dark_frame_in_the_folder),
+        CLI_TEST(test_dark_frames_of_a_pattern),
+        CLI_TEST(test_no_such_file),
+        CLI_TEST(test_notes_of_settings),
+        CLI_TEST(test_a_dim_card),
+        CLI_TEST(test_replaced_settings),
         CLI_TEST(test_what_can_be_written_is),
         CLI_TEST(test_deep_falloffs_for_lensfun),
         CLI_TEST(test_the_table),
