@@ -99,7 +99,6 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kWarns,   kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kDoubtfulEv,         Wording::weak},
     {LENSPROF_REASON_FLAT_STEEP,           kWarns,   kCenterByPrior,        measure::slope,                   Side::above, flat_limits::kSlantAlone,         Wording::weak},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasGrid,   measure::not_radial_grid,         Side::above, flat_limits::kMuchNotRadial,      Wording::alone_grid},
-    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kOneAngle|kHasGrid,    measure::not_radial_grid,         Side::above, flat_limits::kMuchNotRadial,      Wording::alone_grid},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasNoGrid, measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
     {LENSPROF_REASON_FLAT_NEEDS_GRID,      kWarns,   kHasNoGrid,            measure::polynomial_error,        Side::above, flat_limits::kNotPolynomial,      Wording::alone},
     // Worth knowing.

@@ -126,8 +126,13 @@ void refuse_dark_cards(const std::vector<std::string> &files, const CardOptions 
     const auto folder_of = [](const std::string &file) { return std::filesystem::path(file).parent_path(); };
     for (const std::string &file : files) {
         const auto is_near = [&](const std::string &other) { return folder_of(other) == folder_of(file); };
-        if (is_folder(file) || std::none_of(o.dark_files.begin(), o.dark_files.end(), is_near)) continue;
-        if (const auto level = dark_level_of(file, o.max_side); level && *level <= highest)
+        const auto is_it = [&](const std::string &other) { return is_same_file(other, file); };
+        if (is_folder(file) || std::none_of(o.dark_files.begin(), o.dark_files.end(), is_near)
+            || std::any_of(o.dark_files.begin(), o.dark_files.end(), is_it))
+            continue;
+        const auto level = dark_level_of(file, o.max_side);
+        const bool is_alike = level && (are_codes || (*level > 1.0) == (dark.brightest > 1.0));  // counts, or shares
+        if (is_alike && *level <= highest)
             throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is as dark as " + dark.file
                                                        + ", but is given as a card; repeat " + option_name("dark")
                                                        + " for each file");
