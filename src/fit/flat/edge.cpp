@@ -19,10 +19,10 @@ constexpr size_t kFewest = 3;       // cells of a dark place,
 constexpr int kDepth = 2;           // and as many from the frame's border: a narrower one is a border of the picture,
 constexpr size_t kCorner = 12;      // unless it has so few that it is a corner
 constexpr int kTip = 3;            // cells along a diagonal that a circle cuts off without such a dark place: they have
-constexpr double kMissing = 0.06;  // less light, ln, than those before them continue to,
+constexpr double kMissing = 0.25;  // less light, ln, than those before them continue to,
 constexpr double kMissingInBlack = 1.0;  // by more if it is black,
 constexpr int kBeforeTip = 8;            // of which these are taken
-constexpr int kCornersOfCircle = 3;      // of the frame cut off: by a circle about the middle
+constexpr int kCornersOfCircle = 3;      // of the frame that a circle about the middle cuts off at least
 constexpr double kOffCircle = 2.0;       // cells between a place of the outline and its circle
 
 struct DarkMap {
@@ -163,7 +163,7 @@ std::array<Corner, 4> corners_of(const CellGrid &grid) {
 }
 
 // Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many
-// it cuts off; a single one may be dust.
+// it cuts off; fewer than three may be dust.
 int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
     if (std::min(map.grid.columns, map.grid.rows) < 2 * (kTip + kBeforeTip)) return 0;
     const std::array<Corner, 4> corners = corners_of(map.grid);
@@ -174,7 +174,7 @@ int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &r
         depth[n] = is_dark ? 0 : depth_of_tip(map, corners[n].diagonal);
         cut += is_dark || depth[n] > 0;
     }
-    for (size_t n = 0; n < 4 && cut > 1; n++) {
+    for (size_t n = 0; n < 4 && cut >= kCornersOfCircle; n++) {
         const Corner &corner = corners[n];
         for (int i = 0; i < 2 * depth[n]; i++)
             for (int j = 0; i + j < 2 * depth[n]; j++)
