@@ -14,7 +14,7 @@ constexpr double kFarthestCircle = 0.5;  // half diagonals: a straight outline i
 
 }  // namespace
 
-std::optional<Circle> circle_through(const std::vector<std::array<double, 2>> &places, double slack) {
+std::optional<lensprof_image_circle> circle_through(const std::vector<std::array<double, 2>> &places, double slack) {
     if (places.size() < kFewest) return std::nullopt;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -32,7 +32,7 @@ std::optional<Circle> circle_through(const std::vector<std::array<double, 2>> &p
     const auto near = static_cast<double>(std::count_if(places.begin(), places.end(), is_near));
     if (!(near >= kRoundShare * static_cast<double>(places.size())) || !(center.norm() <= kFarthestCircle))
         return std::nullopt;
-    return Circle{{center[0], center[1]}, radius};
+    return lensprof_image_circle{{center[0], center[1]}, radius};
 }
 
 }  // namespace lensprof

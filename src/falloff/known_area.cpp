@@ -135,7 +135,7 @@ bool shows_edge(const FalloffMap &map, const Mask &dark, uint32_t edge) {
            && median_across(map, grown(map, dark, edge)) >= kBright * kDark;
 }
 
-Mask inside_circle(const FalloffMap &map, const Circle &circle, uint32_t edge) {
+Mask inside_circle(const FalloffMap &map, const lensprof_image_circle &circle, uint32_t edge) {
     const double half = lensprof_half_diagonal(map.width, map.height);
     const double radius = circle.radius * half - edge * std::max(map.dx, map.dy);
     Mask inside;
@@ -188,7 +188,7 @@ KnownArea drop_surround(FalloffMap &map) {
         for (size_t i = 0; i < unknown.size(); i++) empty[i] |= dark[i], unknown[i] = dark[i] || !unknown[i];
     }
     const double slack = kOffCircle * std::max(map.dx, map.dy) / lensprof_half_diagonal(map.width, map.height);
-    const std::optional<Circle> circle = circle_through(outline(map, unknown), slack);
+    const std::optional<lensprof_image_circle> circle = circle_through(outline(map, unknown), slack);
     for (size_t i = 0; i < unknown.size(); i++) unknown[i] |= empty[i];
     const Mask inside = circle ? inside_circle(map, *circle, edge) : inside_box(map, unknown);
     return {circle, share(empty, Mask(empty.size(), 1)), share(unknown, inside)};

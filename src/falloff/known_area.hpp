@@ -9,9 +9,9 @@
 namespace lensprof {
 
 struct KnownArea {
-    std::optional<Circle> circle;  // if what is known is one, or the part of one within the frame
-    double empty;                  // share of the frame without values, or dark next to an edge
-    double holes;                  // share of the circle, of a rectangle in the middle, or of the frame, not known
+    std::optional<lensprof_image_circle> circle;  // if what is known is one, or the part of one within the frame
+    double empty;                                 // share of the frame without values, or dark next to an edge
+    double holes;  // share of the circle, of a rectangle in the middle, or of the frame, not known
 };
 
 // Marks what is dark next to an edge as not known, with the edge itself, where pixels are means of both sides.

@@ -61,30 +61,35 @@ bool has_one_falloff(const lensprof_profile &model) {
     return model.grid.channels != 3 && std::all_of(model.vignetting, model.vignetting + model.vignettings, is_first);
 }
 
+// A note of the first picture that it concerns, with the number of others.
+template <class Concerns>
+void note_of(const std::vector<Correction> &jobs, const Concerns &concerns, const std::string &text, Streams &streams) {
+    const auto first = std::find_if(jobs.begin(), jobs.end(), concerns);
+    if (first == jobs.end()) return;
+    const auto count = std::count_if(first, jobs.end(), concerns);
+    note(streams, first->source + (count > 1 ? " and " + std::to_string(count - 1) + " more" : "") + ": " + text);
+}
+
 // For --chroma: pictures whose colour the profile cannot correct.
 void note_colourless(const std::vector<Correction> &jobs, Streams &streams) {
-    const auto is_colourless = [](const Correction &job) { return has_one_falloff(*job.model); };
-    const auto first = std::find_if(jobs.begin(), jobs.end(), is_colourless);
-    if (first == jobs.end()) return;
-    const auto count = static_cast<size_t>(std::count_if(first, jobs.end(), is_colourless));
-    note(streams, first->source + (count > 1 ? format(" and %zu more", count - 1) : "")
-                      + ": its profile has one falloff for all channels, so that --chroma leaves it unchanged");
+    note_of(
+        jobs, [](const Correction &job) { return has_one_falloff(*job.model); },
+        "its profile has one falloff for all channels, so that --chroma leaves it unchanged", streams);
 }
 
 // What a profile with an image circle leaves alone; opcodes of DNG do not hold it.
-void note_circles(const std::vector<Correction> &jobs, bool in_opcodes, Streams &streams) {
-    const Correction *first = nullptr;
-    size_t count = 0;
-    for (const Correction &job : jobs) {
-        if (job.model->image_circle.radius == 0.0 || job.copies_dng != in_opcodes) continue;
-        if (!count++) first = &job;
+void note_circles(const std::vector<Correction> &jobs, Streams &streams) {
+    const auto radius = [](const Correction &job) { return job.model->image_circle.radius; };
+    for (const bool in_opcodes : {false, true}) {
+        const auto concerns = [&](const Correction &job) { return radius(job) > 0.0 && job.copies_dng == in_opcodes; };
+        const auto first = std::find_if(jobs.begin(), jobs.end(), concerns);
+        if (first == jobs.end()) continue;
+        note_of(jobs, concerns,
+                format("the image circle has a radius of %.2f half diagonals; ", radius(*first))
+                    + (in_opcodes ? "the opcode lifts what lies outside by the continued falloff"
+                                  : "what lies outside is left as it is"),
+                streams);
     }
-    if (!first) return;
-    note(streams,
-         first->source + (count > 1 ? format(" and %zu more", count - 1) : "")
-             + format(": the image circle has a radius of %.2f half diagonals; ", first->model->image_circle.radius)
-             + (in_opcodes ? "the opcode lifts what lies outside by the continued falloff"
-                           : "what lies outside is left as it is"));
 }
 
 // Prints each note once, with the first picture it applies to; for pictures with the same answer the largest error.
@@ -202,7 +207,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
     if (o.kind.chroma) note_colourless(work.jobs, streams);
-    for (const bool in_opcodes : {false, true}) note_circles(work.jobs, in_opcodes, streams);
+    note_circles(work.jobs, streams);
     print_notes(work.jobs, streams);
     const CopySink sink{sheet.side(), [&](uint32_t i, const SmallCopies &small) {
                             sheet.put(i, sheet_cell(work.jobs[i], small, sheet.side()));

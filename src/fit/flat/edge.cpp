@@ -229,7 +229,7 @@ double inward_of(const DarkMap &map, int cell) {
 }
 
 // The circle through the outline. Where it is not a circle, nearest is the distance of its nearest place.
-std::optional<Circle> outline_of(const DarkMap &map, const std::vector<int> &rim, double &nearest) {
+std::optional<lensprof_image_circle> outline_of(const DarkMap &map, const std::vector<int> &rim, double &nearest) {
     std::vector<std::array<double, 2>> places;
     nearest = INFINITY;
     for (int cell : rim) {
@@ -243,7 +243,8 @@ std::optional<Circle> outline_of(const DarkMap &map, const std::vector<int> &rim
 
 // Cells beyond a radius of the circle that join what is outside, such as a line of cells along the frame's border that
 // the dark covers in part. An arc shows little of the other side of the frame, which does not join it.
-void leave_out_beyond(const CellGrid &grid, const Circle &circle, double radius, std::vector<bool> &outside) {
+void leave_out_beyond(const CellGrid &grid, const lensprof_image_circle &circle, double radius,
+                      std::vector<bool> &outside) {
     std::vector<bool> beyond(outside.size());
     for (int cell = 0; cell < grid.count(); cell++) {
         const auto [x, y] = place_of(grid, cell);
@@ -262,7 +263,7 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     const int corners = add_tips(map, edge.outside, rim);
     if (rim.empty()) return edge;
     edge.circle = outline_of(map, rim, edge.radius);
-    if (!edge.circle && corners >= kCornersOfCircle) edge.circle = Circle{{0.0, 0.0}, edge.radius};
+    if (!edge.circle && corners >= kCornersOfCircle) edge.circle = lensprof_image_circle{{0.0, 0.0}, edge.radius};
     if (edge.circle) edge.radius = edge.circle->radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;

@@ -150,7 +150,6 @@ void choose_light(FlatFit &fit, int curves) {
     const double gain =
         2.0
         * (cost_with_noise_of(plane.estimate, even.problem, even.estimate) - flat_cost(plane.problem, plane.estimate));
-
     fit.light_ev = corner_difference(fit.grid, even, plane);
     const bool is_even = gain < kEven && std::hypot(v.center[0], v.center[1]) < kPlausibleCenter;
     fit.other = is_even ? plane : even;
@@ -256,8 +255,9 @@ void fill_lens(const FlatFit &fit, FlatResult &r) {
     r.light_ev = fit.light_ev;
     r.edge_radius = fit.edge.radius;
     r.edge_share = fit.edge.share;
-    if (const auto &circle = fit.edge.circle)  // the falloff does not describe a soft edge
-        r.image_circle = {{circle->center[0], circle->center[1]}, std::max(circle->radius - fit.edge.soft, 0.01)};
+    r.image_circle = fit.edge.circle.value_or(lensprof_image_circle{});
+    if (fit.edge.circle)  // the falloff does not describe a soft edge
+        r.image_circle.radius = std::max(r.image_circle.radius - fit.edge.soft, 0.01);
     r.shots = static_cast<uint32_t>(model.shots);
     r.cells = static_cast<uint32_t>(fit.problem.cells.size());
     r.separated = is_separated(fit);

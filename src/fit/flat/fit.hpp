@@ -21,12 +21,12 @@ struct FlatResult : lensprof_flat_result {
 
 // The end of the image circle in the frame, or what covers its corners.
 struct FlatEdge {
-    double radius = 0.0;           // of its circle, or of the nearest dark place; half diagonals, 0: none
-    double inner = 0.0;            // up to which there are cells
-    double share = 0.0;            // of the frame's cells, left out
-    std::vector<bool> outside;     // per cell
-    std::optional<Circle> circle;  // the outline, where half of the light is left
-    double soft = 0.0;             // width of the outline beyond that of a sharp one, half diagonals
+    double radius = 0.0;        // of its circle, or of the nearest dark place; half diagonals, 0: none
+    double inner = 0.0;         // up to which there are cells
+    double share = 0.0;         // of the frame's cells, left out
+    std::vector<bool> outside;  // per cell
+    std::optional<lensprof_image_circle> circle;  // the outline, where half of the light is left
+    double soft = 0.0;                            // width of the outline beyond that of a sharp one, half diagonals
 };
 
 // What the stated black level leaves, per channel: share of white less black.

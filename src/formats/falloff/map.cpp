@@ -103,8 +103,7 @@ double fit_values(const MapValues &form, const float *values, uint32_t width, ui
     const KnownArea known = drop_surround(map);
     const double worst = fit_map(map, profile);
     check_holes(known);
-    profile.image_circle = {};
-    if (known.circle) profile.image_circle = {{known.circle->center[0], known.circle->center[1]}, known.circle->radius};
+    profile.image_circle = known.circle.value_or(lensprof_image_circle{});
     profile.covariance_size = 0;
     std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
     return worst;
