@@ -128,6 +128,25 @@ static void a_dark_strip_leaves_the_rest(void **) {
     assert_close(found_falloff(*r, p, 479, 0), falloff(1.0), 0.005);
 }
 
+// Nor is the border of a scan, which darkens the corners as the tips of a circle would: wider than a cell, or narrower,
+// where only corners are mostly dark.
+static void a_dark_border_is_no_circle(void **) {
+    for (const double width : {3.0, 5.0, 9.0}) {
+        FlatPictures p = small_card();
+        const auto falloff = law_of_the_cosine(0.5);
+        p.set_falloff(0.0, 0.0, falloff);
+        p.defect = [=, inside = p.defect](double x, double y, uint32_t c) {
+            return std::min({x, 479 - x, y, 319 - y}) < width ? 0.0001 : inside(x, y, c);
+        };
+        p.shoot(0);
+        const auto r = p.fit(p.options());
+        assert_true(r->usable);
+        assert_true(r->image_circle.radius == 0.0 && r->edge_radius == 0.0);
+        for (const auto &[x, y] : {std::array{0.0, 0.0}, {479.0, 0.0}, {20.0, 300.0}, {470.0, 160.0}, {240.0, 160.0}})
+            assert_close(found_falloff(*r, p, x, y), falloff(radius_at(p, x, y)), 0.008);
+    }
+}
+
 static void one_light_is_noted(void **) {
     FlatPictures p = small_card();
     p.shoot(0);
@@ -277,6 +296,7 @@ int main(void) {
         cmocka_unit_test(without_a_grid_a_deep_falloff_is_warned_of),
         cmocka_unit_test(what_lies_outside_the_image_circle_is_left_out),
         cmocka_unit_test(a_dark_strip_leaves_the_rest),
+        cmocka_unit_test(a_dark_border_is_no_circle),
         cmocka_unit_test(one_light_is_noted),
         cmocka_unit_test(the_light_is_even_where_that_describes_the_card),
         cmocka_unit_test(the_depth_is_not_taken_for_a_slope),

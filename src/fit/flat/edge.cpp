@@ -30,6 +30,7 @@ struct DarkMap {
     std::vector<double> light;     // ln, the mean of the channels; NaN without data
     std::vector<double> variance;  // of it, by the noise of the pixels
     std::vector<bool> is_black;    // the light is about 0, and its logarithm imprecise
+    std::vector<float> low_share;  // of pixels far darker than the rest
     double side;                   // of a cell, half diagonals
 
     int cells(double width) const { return std::max(2, static_cast<int>(std::lround(width / side))); }
@@ -48,8 +49,12 @@ struct DarkMap {
 
 DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
     const double half = lensprof_half_diagonal(grid.width, grid.height);
-    DarkMap map{grid, std::vector<double>(shot.light.size(), NAN), std::vector<double>(shot.light.size(), 0.0),
-                std::vector<bool>(shot.light.size(), false), std::max(grid.cell_width(), grid.cell_height()) / half};
+    DarkMap map{grid,
+                std::vector<double>(shot.light.size(), NAN),
+                std::vector<double>(shot.light.size(), 0.0),
+                std::vector<bool>(shot.light.size(), false),
+                std::vector<float>(shot.light.size(), 0.0f),
+                std::max(grid.cell_width(), grid.cell_height()) / half};
     for (size_t i = 0; i < map.light.size(); i++) {
         const CellLight &cell = shot.light[i];
         if (cell.state == CellState::masked || !shot.card[i]) continue;
@@ -60,6 +65,7 @@ DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
         }
         map.light[i] = sum / channels, map.variance[i] = variance / channels / channels;
         map.is_black[i] = cell.state == CellState::black;
+        map.low_share[i] = cell.low_share;
     }
     return map;
 }
@@ -162,6 +168,19 @@ std::array<Corner, 4> corners_of(const CellGrid &grid) {
     return corners;
 }
 
+// Whether the frame's border is dark far from its corner as well, along one of its sides: no circle has a straight
+// edge. The mean of a cell may show nothing of it, but a cell where it is half of a corner's has this share.
+bool is_at_border(const DarkMap &map, const Corner &corner) {
+    constexpr double lit = 0.5;    // ln, of the cells next to it
+    constexpr float share = 0.2f;  // of pixels far darker than the rest
+    const auto is_dark = [&](int along, int inward) {
+        const auto far = static_cast<size_t>(corner.diagonal[0] + (kTip + kBeforeTip) * along);
+        const double next = map.light[far + static_cast<size_t>(kTip * inward)];
+        return map.is_black[far] || map.low_share[far] > share || !(map.light[far] > next - lit);  // also if left out
+    };
+    return is_dark(corner.right, corner.down) || is_dark(corner.down, corner.right);
+}
+
 // Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many
 // it cuts off; fewer than three may be dust.
 int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
@@ -171,7 +190,7 @@ int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &r
     int cut = 0;
     for (size_t n = 0; n < 4; n++) {
         const bool is_dark = outside[static_cast<size_t>(corners[n].diagonal[0])];
-        depth[n] = is_dark ? 0 : depth_of_tip(map, corners[n].diagonal);
+        if (!is_dark && !is_at_border(map, corners[n])) depth[n] = depth_of_tip(map, corners[n].diagonal);
         cut += is_dark || depth[n] > 0;
     }
     for (size_t n = 0; n < 4 && cut >= kCornersOfCircle; n++) {
