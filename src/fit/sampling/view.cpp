@@ -256,7 +256,10 @@ void View::row(int v, float *values, uint8_t *allowed) const {
         colour_row<uint16_t>(image_.view, v, offset, values);
     else
         colour_row<float>(image_.view, v, offset, values);
-    for (int u = 0; u < static_cast<int>(image_.view.width); u++) allowed[u] = is_allowed(u, v);
+    if (image_.mask || alpha_)
+        for (int u = 0; u < static_cast<int>(image_.view.width); u++) allowed[u] = is_allowed(u, v);
+    else
+        std::fill_n(allowed, image_.view.width, uint8_t{1});
 }
 
 void View::grey_row(int v, float *out) const {
