@@ -8,6 +8,16 @@
 
 namespace lensprof {
 
+namespace {
+
+double power_of(double base, int exponent) {
+    double product = 1.0;
+    for (int n = 0; n < exponent; n++) product *= base;
+    return product;
+}
+
+}  // namespace
+
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
                       PowerSample (*sample_at)(const void *context, int i), const void *context) {
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxPowers, kMaxPowers>;
@@ -20,7 +30,7 @@ PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
         right.setZero();
         for (int i = 0; i < samples; i++) {
             const PowerSample s = sample_at(context, i);
-            for (int n = 0; n < count; n++) row[n] = std::pow(s.r2, power[n]);
+            for (int n = 0; n < count; n++) row[n] = power_of(s.r2, power[n]);
             if (round == 0) normal += s.weight * row * row.transpose();
             right += s.weight * row * (round == 0 ? s.value : s.value - row.dot(terms));
         }
