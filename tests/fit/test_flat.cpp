@@ -23,16 +23,15 @@ static void derivatives_are_those_of_central_differences(void **) {
             for (int channel = 0; channel < 3; channel++) {
                 double x = 600 * lp_random(&random), y = 400 * lp_random(&random);
                 const auto c = static_cast<size_t>(channel);
-                const Prediction p = predictions(model, u, shot, x, y)[c];
-                assert_close(p.value, predicted_light(model, u, shot, x, y)[c], 1e-12 * p.value);
+                const auto light = [&](const Eigen::VectorXd &at) { return FlatLight(model, at).at(shot, x, y)[c]; };
+                const Prediction p = FlatLight(model, u).with_derivatives(shot, x, y)[c];
+                assert_close(p.value, light(u), 1e-12 * p.value);
                 Eigen::VectorXd by = Eigen::VectorXd::Zero(u.size());
                 for (size_t i = 0; i < static_cast<size_t>(p.count); i++) by[p.index[i]] += p.derivative[i];
                 for (Eigen::Index i = 0; i < u.size(); i++) {
                     Eigen::VectorXd up = u, down = u;
                     up[i] += 1e-5, down[i] -= 1e-5;
-                    double slope =
-                        (predicted_light(model, up, shot, x, y)[c] - predicted_light(model, down, shot, x, y)[c])
-                        / 2e-5;
+                    const double slope = (light(up) - light(down)) / 2e-5;
                     assert_close(by[i], slope, 1e-7 * (1.0 + std::fabs(slope)));
                 }
             }

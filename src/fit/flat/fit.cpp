@@ -17,6 +17,7 @@ constexpr double kSmallestDifference = 2e-3;  // of M in the corner: half a leve
 constexpr double kMisfit = 1e-4;              // of the light: what k1..k3 leave that another form is tried for,
 constexpr double kClearlyBetter = 50.0;       // and how much that must lower the objective: 10 sigma
 constexpr double kEven = 22.5;                // chi-squared that six terms of a plane gain by chance: 99.9 %
+constexpr double kFarFromEven = 1000.0;       // chi-squared: an even light is then no start for a plane
 constexpr double kPlausibleCenter = 0.06;     // half diagonals, three standard deviations of the prior
 
 void report(const lensprof_flat_options &options, double done) {
@@ -145,11 +146,13 @@ void choose_light(FlatFit &fit, int curves) {
     fit.light = LENSPROF_FLAT_LIGHT_EVEN;
     solve(fit, curves, form);
     const FlatSolution even = solution_of(fit);
-    try_from_even(even, plane, fit.steps);
+    const auto gain_of_plane = [&] {
+        const double cost_even = cost_with_noise_of(plane.estimate, even.problem, even.estimate);
+        return 2.0 * (cost_even - flat_cost(plane.problem, plane.estimate));
+    };
+    if (gain_of_plane() < kFarFromEven) try_from_even(even, plane, fit.steps);
+    const double gain = gain_of_plane();
     const lensprof_vignetting v = falloff_of(even.problem.model, even.estimate.u, 0);
-    const double gain =
-        2.0
-        * (cost_with_noise_of(plane.estimate, even.problem, even.estimate) - flat_cost(plane.problem, plane.estimate));
     fit.light_ev = corner_difference(fit.grid, even, plane);
     const bool is_even = gain < kEven && std::hypot(v.center[0], v.center[1]) < kPlausibleCenter;
     fit.other = is_even ? plane : even;

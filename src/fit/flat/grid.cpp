@@ -87,9 +87,10 @@ bool fit_channel(const FlatFit &fit, int channel, lensprof_gain_grid &gain) {
     const auto nodes = static_cast<Eigen::Index>(gain.columns * gain.rows);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(nodes);
     Entries entries;
+    const FlatLight light(fit.problem.model, fit.estimate.u);
     double total = 0.0;
     for (const FlatCell &cell : fit.problem.cells) {
-        const double p = predicted_light(fit.problem, fit.estimate, cell)[static_cast<size_t>(channel)];
+        const double p = light.at(cell.shot, cell.x, cell.y)[static_cast<size_t>(channel)];
         double weight = 1.0 / (cell.variance[static_cast<size_t>(channel)] / (p * p) + kSmallestNoise * kSmallestNoise);
         Bilinear weights = bilinear(gain, fit.grid, cell);
         total += weight;

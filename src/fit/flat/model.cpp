@@ -9,30 +9,6 @@ namespace {
 
 constexpr double kRotated = 0.5;  // radians
 
-// What all channels share at a place in a shot.
-struct Place {
-    double r2, by_center[2], basis[kMaxLightTerms];
-};
-
-Place place_of(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
-    const CellGrid &grid = model.grid;
-    const lensprof_vignetting v = falloff_of(model, u, 0);
-    const auto [cosine, sine] = model.turn[static_cast<size_t>(shot)];
-    const double half = lensprof_half_diagonal(grid.width, grid.height);
-    const double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
-    const double qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
-    Place place{0.0, {}, {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy}};
-    place.r2 = lensprof_vignetting_r2(&v, grid.width, grid.height, x, y, place.by_center);
-    return place;
-}
-
-// Exposure times radiance, without the falloff.
-double light_at(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, const Place &place) {
-    double log_light = u[model.level(shot, channel)] + (model.several ? u[model.exposure_error(shot)] : 0.0);
-    for (int j = 0; j < model.light_terms; j++) log_light += u[model.light(shot, channel) + j] * place.basis[j];
-    return std::exp(log_light);
-}
-
 }  // namespace
 
 size_t FlatModel::angles() const {
@@ -105,35 +81,68 @@ FalloffAt continued_falloff(const FlatModel &model, const Eigen::VectorXd &u, in
     return at;
 }
 
-std::array<double, 3> predicted_light(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
-    const Place place = place_of(model, u, shot, x, y);
+// What all channels share at a place in a shot.
+struct FlatLight::Place {
+    double r2, by_center[2], basis[kMaxLightTerms];
+};
+
+FlatLight::FlatLight(const FlatModel &model, const Eigen::VectorXd &u)
+    : model_(model), u_(u), about_center_{{}, {u[model.center()], u[model.center() + 1]}} {
+    for (int shot = 0; shot < model.shots; shot++)
+        for (int c = 0; c < model.channels; c++)
+            even_.push_back(std::exp(u[model.level(shot, c)] + (model.several ? u[model.exposure_error(shot)] : 0.0)));
+}
+
+FlatLight::Place FlatLight::place_of(int shot, double x, double y) const {
+    const auto [cosine, sine] = model_.turn[static_cast<size_t>(shot)];
+    Place place{};
+    place.r2 = lensprof_vignetting_r2(&about_center_, model_.grid.width, model_.grid.height, x, y, place.by_center);
+    const double dx = about_center_.center[0] - 0.5 * place.by_center[0],
+                 dy = about_center_.center[1] - 0.5 * place.by_center[1];
+    const double qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
+    const double basis[] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};
+    std::copy_n(basis, kMaxLightTerms, place.basis);
+    return place;
+}
+
+// Exposure times radiance.
+double FlatLight::without_falloff(int shot, int channel, const Place &place) const {
+    const double even = even_[static_cast<size_t>(shot * model_.channels + channel)];
+    if (model_.light_terms == 0) return even;
+    double slope = 0.0;
+    for (int j = 0; j < model_.light_terms; j++) slope += u_[model_.light(shot, channel) + j] * place.basis[j];
+    return even * std::exp(slope);
+}
+
+std::array<double, 3> FlatLight::at(int shot, double x, double y) const {
+    const Place place = place_of(shot, x, y);
     std::array<double, 3> falloff{}, light{};
-    for (int curve = 0; curve < model.curves; curve++)
-        falloff[static_cast<size_t>(curve)] = falloff_value(model, u, curve, place.r2);
-    for (int c = 0; c < model.channels; c++)
+    for (int curve = 0; curve < model_.curves; curve++)
+        falloff[static_cast<size_t>(curve)] = falloff_value(model_, u_, curve, place.r2);
+    for (int c = 0; c < model_.channels; c++)
         light[static_cast<size_t>(c)] =
-            light_at(model, u, shot, c, place) * falloff[static_cast<size_t>(model.curve_of(c))];
+            without_falloff(shot, c, place) * falloff[static_cast<size_t>(model_.curve_of(c))];
     return light;
 }
 
-std::array<Prediction, 3> predictions(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
-    const Place place = place_of(model, u, shot, x, y);
+std::array<Prediction, 3> FlatLight::with_derivatives(int shot, double x, double y) const {
+    const Place place = place_of(shot, x, y);
     std::array<FalloffAt, 3> falloffs;
-    for (int curve = 0; curve < model.curves; curve++)
-        falloffs[static_cast<size_t>(curve)] = falloff_at(model, u, curve, place.r2);
+    for (int curve = 0; curve < model_.curves; curve++)
+        falloffs[static_cast<size_t>(curve)] = falloff_at(model_, u_, curve, place.r2);
     std::array<Prediction, 3> all;
-    for (int c = 0; c < model.channels; c++) {
+    for (int c = 0; c < model_.channels; c++) {
         Prediction &p = all[static_cast<size_t>(c)];
-        const int curve = model.curve_of(c);
+        const int curve = model_.curve_of(c);
         const FalloffAt &falloff = falloffs[static_cast<size_t>(curve)];
-        const double light = light_at(model, u, shot, c, place);
+        const double light = without_falloff(shot, c, place);
         p.value = light * falloff.value;
-        for (int n = 0; n < model.terms(); n++)
-            p.add(model.k(curve) + n, light * falloff.by_term[static_cast<size_t>(n)]);
-        for (int d = 0; d < 2; d++) p.add(model.center() + d, light * falloff.slope * place.by_center[d]);
-        p.add(model.level(shot, c), p.value);
-        if (model.several) p.add(model.exposure_error(shot), p.value);
-        for (int j = 0; j < model.light_terms; j++) p.add(model.light(shot, c) + j, p.value * place.basis[j]);
+        for (int n = 0; n < model_.terms(); n++)
+            p.add(model_.k(curve) + n, light * falloff.by_term[static_cast<size_t>(n)]);
+        for (int d = 0; d < 2; d++) p.add(model_.center() + d, light * falloff.slope * place.by_center[d]);
+        p.add(model_.level(shot, c), p.value);
+        if (model_.several) p.add(model_.exposure_error(shot), p.value);
+        for (int j = 0; j < model_.light_terms; j++) p.add(model_.light(shot, c) + j, p.value * place.basis[j]);
     }
     return all;
 }

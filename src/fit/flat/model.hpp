@@ -70,10 +70,7 @@ double falloff_value(const FlatModel &model, const Eigen::VectorXd &u, int curve
 FalloffAt falloff_at(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2);
 FalloffAt continued_falloff(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2);
 
-// The light predicted for the channels at a place in a shot.
-std::array<double, 3> predicted_light(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y);
-
-// The same of one channel with its derivatives by the unknowns it depends on, which are the same everywhere in a shot.
+// The light of a channel with its derivatives by the unknowns it depends on, which are the same everywhere in a shot.
 struct Prediction {
     static constexpr int kMaxEntries = kMaxFalloffTerms + 2 + 2 + kMaxLightTerms;
     double value = 0.0;
@@ -87,7 +84,24 @@ struct Prediction {
     }
 };
 
-std::array<Prediction, 3> predictions(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y);
+// The light that some unknowns predict for the channels at a place in a shot. Both arguments must outlive it.
+class FlatLight {
+public:
+    FlatLight(const FlatModel &model, const Eigen::VectorXd &u);
+
+    std::array<double, 3> at(int shot, double x, double y) const;
+    std::array<Prediction, 3> with_derivatives(int shot, double x, double y) const;
+
+private:
+    struct Place;
+    Place place_of(int shot, double x, double y) const;
+    double without_falloff(int shot, int channel, const Place &place) const;
+
+    const FlatModel &model_;
+    const Eigen::VectorXd &u_;
+    lensprof_vignetting about_center_;
+    std::vector<double> even_;  // the same everywhere: per shot and channel
+};
 
 // Slope of the logarithm of the light in a shot's frame, to the right and down, per half diagonal: mean of the
 // channels.

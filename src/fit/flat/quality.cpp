@@ -296,6 +296,7 @@ double radius_of(const FlatFit &fit, const lensprof_vignetting &v, const FlatCel
 
 void describe_images(const FlatFit &fit, FlatResult &r) {
     Responses responses(fit.options);
+    const FlatLight light(fit.problem.model, fit.estimate.u);
     for (size_t s = 0; s < fit.shots.size() && r.image_quality; s++) {
         const Shot &shot = fit.shots[s];
         lensprof_flat_image_quality q{};
@@ -304,7 +305,7 @@ void describe_images(const FlatFit &fit, FlatResult &r) {
             if (cell.shot != static_cast<int>(s)) continue;
             q.cells++;
             q.radius = std::max(q.radius, radius_of(fit, r.vignetting[0], cell));
-            const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+            const auto predicted = light.at(cell.shot, cell.x, cell.y);
             for (size_t c = 0; c < fit.options.channels; c++)
                 square.add(std::pow(cell.value[c] / predicted[c] - 1.0, 2));
         }
@@ -326,11 +327,12 @@ void describe_images(const FlatFit &fit, FlatResult &r) {
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust) {
     const Shot &shot_data = fit.shots[static_cast<size_t>(shot)];
     std::vector<double> map(shot_data.light.size(), std::numeric_limits<double>::quiet_NaN());
+    const FlatLight light(fit.problem.model, fit.estimate.u);
     for (size_t i = 0; i < map.size(); i++) {
         bool left_out = fit.left_out[static_cast<size_t>(shot)][i] && !dust;
         if (shot_data.light[i].state != CellState::used || !shot_data.card[i] || left_out) continue;
         const double x = shot_data.light[i].x, y = shot_data.light[i].y;
-        double p = predicted_light(fit.problem.model, fit.estimate.u, shot, x, y)[static_cast<size_t>(channel)];
+        double p = light.at(shot, x, y)[static_cast<size_t>(channel)];
         if (gain)
             p *= held_ratio(fit, channel, x, y)
                  * lensprof_gain_grid_eval(gain, fit.grid.width, fit.grid.height, x, y, static_cast<uint32_t>(channel));
@@ -341,9 +343,10 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
 
 // Mean variance of a cell's noise, relative to its light.
 double noise_variance(const FlatFit &fit) {
+    const FlatLight light(fit.problem.model, fit.estimate.u);
     Mean noise;
     for (const FlatCell &cell : fit.problem.cells) {
-        const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+        const auto predicted = light.at(cell.shot, cell.x, cell.y);
         for (size_t c = 0; c < fit.options.channels; c++) noise.add(cell.variance[c] / (predicted[c] * predicted[c]));
     }
     return noise.value();
@@ -354,12 +357,14 @@ double frame_residual(const FlatFit &fit) { return split_residuals(fit, nullptr,
 double shot_residual(const FlatFit &fit) { return split_residuals(fit, nullptr, noise_variance(fit)).per_shot; }
 
 void describe_flat(const FlatFit &fit, FlatResult &r) {
+    const FlatLight light(fit.problem.model, fit.estimate.u);
     Mean square, inlier;
     r.radius = 0.0;
+    for (double chi2 : flat_chi2(fit.problem, fit.estimate))
+        inlier.add(chi2 < inlier_limit(fit.problem.model.channels));
     for (const FlatCell &cell : fit.problem.cells) {
         r.radius = std::max(r.radius, radius_of(fit, r.vignetting[0], cell));
-        inlier.add(flat_chi2(fit.problem, fit.estimate, cell) < inlier_limit(fit.problem.model.channels));
-        const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+        const auto predicted = light.at(cell.shot, cell.x, cell.y);
         for (size_t c = 0; c < fit.options.channels; c++) square.add(std::pow(cell.value[c] / predicted[c] - 1.0, 2));
     }
     const double noise = noise_variance(fit);

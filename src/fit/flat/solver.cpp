@@ -30,6 +30,8 @@ constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: bel
 
 double square(double x) { return x * x; }
 
+size_t channels_of(const FlatProblem &problem) { return static_cast<size_t>(problem.model.channels); }
+
 double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.model.channels; }
 
 // Standard deviation of a cell's residual.
@@ -47,20 +49,22 @@ using Sigmas = std::vector<std::array<double, 3>>;
 
 Sigmas all_sigmas(const FlatProblem &problem, const FlatEstimate &estimate) {
     Sigmas sigmas(problem.cells.size());
+    const FlatLight light(problem.model, estimate.u);
     for (size_t i = 0; i < sigmas.size(); i++) {
-        const auto residuals = flat_residuals(problem, estimate, problem.cells[i]);
-        for (size_t c = 0; c < 3; c++) sigmas[i][c] = estimate.scale * residuals[c].sigma;
+        const FlatCell &cell = problem.cells[i];
+        const auto predicted = light.at(cell.shot, cell.x, cell.y);
+        for (size_t c = 0; c < channels_of(problem); c++)
+            sigmas[i][c] = estimate.scale * sigma_of(estimate, cell.variance[c], predicted[c]);
     }
     return sigmas;
 }
 
-size_t channels_of(const FlatProblem &problem) { return static_cast<size_t>(problem.model.channels); }
-
 double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas, double inflation) {
+    const FlatLight light(problem.model, u);
     double sum = 0.0, divisor;
     for (size_t i = 0; i < sigmas.size(); i++) {
         const FlatCell &cell = problem.cells[i];
-        const auto predicted = predicted_light(problem.model, u, cell.shot, cell.x, cell.y);
+        const auto predicted = light.at(cell.shot, cell.x, cell.y);
         double chi2 = 0.0;
         for (size_t c = 0; c < channels_of(problem); c++) chi2 += square((cell.value[c] - predicted[c]) / sigmas[i][c]);
         sum += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
@@ -105,10 +109,11 @@ QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorX
                                 double inflation) {
     const size_t channels = channels_of(problem);
     std::vector<ChannelEquations> equations(channels * static_cast<size_t>(problem.model.shots));
+    const FlatLight light(problem.model, u);
     QuadraticModel normal;
     for (size_t i = 0; i < sigmas.size(); i++) {
         const FlatCell &cell = problem.cells[i];
-        const auto predicted = predictions(problem.model, u, cell.shot, cell.x, cell.y);
+        const auto predicted = light.with_derivatives(cell.shot, cell.x, cell.y);
         double residual[3], chi2 = 0.0, divisor;
         for (size_t c = 0; c < channels; c++) {
             residual[c] = (cell.value[c] - predicted[c].value) / sigmas[i][c];
@@ -175,8 +180,8 @@ double block_inflation(const FlatProblem &problem, const Scaled &residuals, int 
         std::vector<double> sum(static_cast<size_t>(blocks)), count(sum.size());
         for (size_t i = 0; i < problem.cells.size(); i++) {
             if (residuals.chi2[i] > inlier_limit(problem.model.channels)) continue;
-            const int cell = problem.cells[i].cell;
-            auto block = static_cast<size_t>(cell / grid.columns / side * across + cell % grid.columns / side);
+            const int cell = problem.cells[i].cell, row = cell / grid.columns, column = cell - row * grid.columns;
+            const auto block = static_cast<size_t>(row / side * across + column / side);
             for (int c = 0; c < problem.model.channels; c++)
                 if (problem.model.curve_of(c) == curve) {
                     sum[block] += residuals.z[i][static_cast<size_t>(c)];
@@ -223,7 +228,9 @@ double residual_variance(const FlatProblem &problem, const std::vector<double> &
 void measure_noise(const FlatProblem &problem, FlatEstimate &estimate) {
     const size_t channels = channels_of(problem), cells = problem.cells.size();
     std::vector<std::array<double, 3>> predicted(cells);
-    for (size_t i = 0; i < cells; i++) predicted[i] = predicted_light(problem, estimate, problem.cells[i]);
+    const FlatLight light(problem.model, estimate.u);
+    for (size_t i = 0; i < cells; i++)
+        predicted[i] = light.at(problem.cells[i].shot, problem.cells[i].x, problem.cells[i].y);
     estimate.unevenness = unevenness(problem, predicted);
     Scaled residuals{std::vector<std::array<double, 3>>(cells), std::vector<double>(cells)};
     for (size_t i = 0; i < cells; i++)
@@ -319,32 +326,24 @@ Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting
     return u;
 }
 
-std::array<double, 3> predicted_light(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
-    return predicted_light(problem.model, estimate.u, cell.shot, cell.x, cell.y);
-}
-
-std::array<FlatResidual, 3> flat_residuals(const FlatProblem &problem, const FlatEstimate &estimate,
-                                           const FlatCell &cell) {
-    const auto predicted = predicted_light(problem, estimate, cell);
-    std::array<FlatResidual, 3> residuals{};
-    for (size_t c = 0; c < channels_of(problem); c++) {
-        const double sigma = sigma_of(estimate, cell.variance[c], predicted[c]);
-        residuals[c] = {predicted[c], sigma, (cell.value[c] - predicted[c]) / sigma};
+std::vector<double> flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate) {
+    const FlatLight light(problem.model, estimate.u);
+    std::vector<double> chi2;
+    chi2.reserve(problem.cells.size());
+    for (const FlatCell &cell : problem.cells) {
+        const auto predicted = light.at(cell.shot, cell.x, cell.y);
+        double sum = 0.0;
+        for (size_t c = 0; c < channels_of(problem); c++)
+            sum += square((cell.value[c] - predicted[c]) / sigma_of(estimate, cell.variance[c], predicted[c]));
+        chi2.push_back(sum / square(estimate.scale));
     }
-    return residuals;
+    return chi2;
 }
 
 double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate) {
     double sum = 0.0, divisor;
-    for (const FlatCell &cell : problem.cells)
-        sum += 0.5 * robust_cost(flat_chi2(problem, estimate, cell), cutoff(problem), &divisor);
+    for (double chi2 : flat_chi2(problem, estimate)) sum += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
     return sum / estimate.inflation + prior_objective(problem, estimate.u);
-}
-
-double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
-    double sum = 0.0;
-    for (const FlatResidual &residual : flat_residuals(problem, estimate, cell)) sum += square(residual.z);
-    return sum / square(estimate.scale);
 }
 
 void refine_flat(const FlatProblem &problem, FlatEstimate &estimate, FlatSteps &steps) {

@@ -50,18 +50,8 @@ std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
 // Start values: k = 0 (or the held values; a logarithm fitted to the cells), even light and the levels of the cells.
 Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given);
 
-// P of a cell's channels.
-std::array<double, 3> predicted_light(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
-
-// P, its sigma and z = (E - P) / sigma.
-struct FlatResidual {
-    double predicted = 0.0, sigma = 1.0, z = 0.0;
-};
-std::array<FlatResidual, 3> flat_residuals(const FlatProblem &problem, const FlatEstimate &estimate,
-                                           const FlatCell &cell);
-
-// Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom per channel.
-double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
+// Sum of squared residuals of each cell, in units of scale^2: chi-squared, one degree of freedom per channel.
+std::vector<double> flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate);
 
 // The objective of all cells and the prior, for the noise that the estimate states: half of chi-squared.
 double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate);
