@@ -99,7 +99,8 @@ typedef enum lensprof_encoding {
 typedef enum lensprof_saturated {
     LENSPROF_SATURATED_NEUTRAL = 0, /* towards white, all channels get the gain of the largest channel, so clouds keep
                                        no cast. Changes only pixels with a channel above 0.9 and none below 0.6, and no
-                                       mosaics, which have one channel per pixel */
+                                       mosaics, which have one channel per pixel. Linear output with levels, mosaics
+                                       too: see below */
     LENSPROF_SATURATED_AS_VALUE = 1 /* no special treatment */
 } lensprof_saturated;
 
@@ -111,7 +112,7 @@ typedef struct lensprof_apply_options {
     uint32_t source_sample, source_layout; /* pixel format of the input */
     uint32_t target_sample;                /* sample type of the output; the layout is that of the input */
     uint32_t saturated; /* lensprof_saturated; NEUTRAL applies if direction is CORRECT and both input and output are
-                           encoded */
+                           encoded, or linear with levels */
     uint32_t responses, vignettings;       /* 1 for all channels, or 3: red, green, blue; grey uses green */
     const lensprof_response *response;     /* read during plan init only; pass a linear one if nothing is encoded */
     const lensprof_vignetting *vignetting; /* read during plan init only. Single precision represents M to about
@@ -133,7 +134,8 @@ typedef struct lensprof_apply_options {
     uint32_t reserved2;                       /* 0 */
     uint32_t chroma;                          /* 1: correct only the colour of the falloff; 0: all of it. See below */
     uint32_t reserved3;                       /* 0 */
-    const lensprof_levels *levels;            /* of the input; NULL = none; read during plan init only */
+    const lensprof_levels *levels;            /* of the input; NULL = none; read during plan init only. Levels of a
+                                                 blob count for both if `levels` and `output_levels` are NULL */
     const lensprof_levels *output_levels; /* of the output; `levels` again: black is put back; NULL: the output is B' */
     const lensprof_image_circle *image_circle; /* outside of it M is 1; NULL = none, or the blob's, with which it must
                                                   be NULL; read during plan init only */
@@ -145,8 +147,10 @@ typedef struct lensprof_apply_options {
  * A model whose channels have one falloff, grey pixels too, keep theirs.
  *
  * Levels: a linear response then counts as linear encoding, which is not clipped at black, so that noise about black
- * keeps its mean. Integer output is clipped at the white level of the output. Integer plans (fixed.h) are UNSUPPORTED
- * with levels, and with an image circle. */
+ * keeps its mean. Integer output is clipped at the white level of the output. If `saturated` is NEUTRAL, linear output
+ * of three channels, mosaics too, is clipped where a saturated sample of the channel with the least ratio of exposures
+ * and white balances lies, if that is below white: otherwise clipped highlights would have the colour of the others.
+ * Integer plans (fixed.h) are UNSUPPORTED with an image circle. */
 
 /* Correct, encoded input and output, u8 RGB in and out, exposures 0 EV, strength 1. The rest is zero; the caller must
  * set it. */

@@ -20,8 +20,9 @@
  * and copied, as it contains no address. Processing pixels then needs no floating point, no heap, no I/O, and at most
  * 512 bytes of stack; lensprof_fixed_plan_init takes up to 2 KiB. Formats: U8 and U16 in layouts GREY to BGRA and
  * mosaics, with equal input and output sample types; U16 requires linear input and output (by their encoding, or
- * because the response is linear). A plan takes about 150 bytes, and for U8 2 KiB more per response. Gain grids, dither
- * and planes are UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different
+ * because the response is linear). Black and white levels count in 1 / 256 of a code. A plan takes about 200 bytes, and
+ * for U8 2 KiB more per response, unless it is linear and has levels. Gain grids, image circles, dither and planes are
+ * UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different
  * tiles. */
 #ifndef LENSPROF_FIXED_H
 #define LENSPROF_FIXED_H

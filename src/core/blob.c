@@ -5,11 +5,12 @@
 
 #include "core/features.h"
 #include "core/gain_grid.h"
+#include "core/levels.h"
 #include "core/profile.h"
 #include "core/response.h"
 
 #define CRC_BYTES 4
-#define LAST_LAYOUT (LP_HAS_CIRCLE ? LP_BLOB_LAYOUT_CIRCLE : LP_BLOB_LAYOUT)
+#define LAST_LAYOUT (1 + (LP_HAS_CIRCLE ? LP_BLOB_CIRCLE : 0) + (LP_HAS_LEVELS ? LP_BLOB_LEVELS : 0))
 #define FRAME_BYTES (LP_BLOB_BYTES + 4 + CRC_BYTES) /* common to all layouts: magic, layout, length, CRC */
 
 uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
@@ -43,10 +44,16 @@ static const uint8_t *take(reader *r, size_t count) {
 
 /* ---- parts ---- */
 
+#if LP_HAS_CIRCLE || LP_HAS_LEVELS
+static int has_part(const lp_blob *blob, enum lp_blob_part part) {
+    return ((lp_u32_at(blob->bytes + LP_BLOB_VERSION) - 1) & (uint32_t)part) != 0;
+}
+#endif
+
 #if LP_HAS_CIRCLE
 static int open_circle(lp_blob *blob, reader *r) {
     lensprof_image_circle *circle = &blob->model.circle;
-    if (lp_u32_at(blob->bytes + LP_BLOB_VERSION) != LP_BLOB_LAYOUT_CIRCLE) return 1;
+    if (!has_part(blob, LP_BLOB_CIRCLE)) return 1;
     const uint8_t *numbers = take(r, 3 * 8);
     if (!numbers) return 0;
     for (int d = 0; d < 2; d++) circle->center[d] = lp_f64_at(numbers + 8 * d);
@@ -55,6 +62,21 @@ static int open_circle(lp_blob *blob, reader *r) {
 }
 #else
 static int open_circle(lp_blob *blob, reader *r) { return (void)blob, (void)r, 1; }
+#endif
+
+#if LP_HAS_LEVELS
+static int open_levels(lp_blob *blob, reader *r) {
+    lensprof_levels *levels = &blob->model.levels[0];
+    if (!has_part(blob, LP_BLOB_LEVELS)) return 1;
+    const uint8_t *numbers = take(r, 4 * 8);
+    if (!numbers) return 0;
+    for (int c = 0; c < 3; c++) levels->black[c] = lp_f64_at(numbers + 8 * c);
+    levels->white = lp_f64_at(numbers + 24);
+    blob->model.levels[1] = *levels; /* black is put back */
+    return lp_has_levels(levels) && lensprof_levels_validate(levels) == LENSPROF_OK;
+}
+#else
+static int open_levels(lp_blob *blob, reader *r) { return (void)blob, (void)r, 1; }
 #endif
 
 static int open_falloff(lp_blob *blob, reader *r) {
@@ -212,6 +234,9 @@ static lensprof_status check_frame(const uint8_t *b, size_t count) {
     if (lp_crc32(b, count - CRC_BYTES) != lp_u32_at(b + count - CRC_BYTES)) return LENSPROF_ERROR_CORRUPT;
     const uint32_t layout = lp_u32_at(b + LP_BLOB_VERSION); /* including the reserved bytes, which are 0 */
     if ((layout & 0xFFFF) > LAST_LAYOUT) return LENSPROF_ERROR_LAYOUT;
+#if LP_HAS_LEVELS && !LP_HAS_CIRCLE
+    if (layout && (layout - 1) & LP_BLOB_CIRCLE) return LENSPROF_ERROR_LAYOUT;
+#endif
     return layout - 1 < LAST_LAYOUT ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }
 
@@ -230,8 +255,8 @@ lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob) {
     blob->bytes = b;
     reader r = {b + LP_BLOB_FIXED, count - LP_BLOB_FIXED - CRC_BYTES};
     const int is_blob = is_zero(b + LP_BLOB_COVARIANCE + 1, 1) && is_zero(b + LP_BLOB_TEXTS + 5, 3)
-                        && open_falloff(blob, &r) && open_circle(blob, &r) && open_responses(blob, &r)
-                        && open_grid(blob, &r) && open_covariance(blob, &r) && open_texts(blob, &r) && r.left == 0
-                        && is_key_and_provenance(blob);
+                        && open_falloff(blob, &r) && open_circle(blob, &r) && open_levels(blob, &r)
+                        && open_responses(blob, &r) && open_grid(blob, &r) && open_covariance(blob, &r)
+                        && open_texts(blob, &r) && r.left == 0 && is_key_and_provenance(blob);
     return is_blob ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }

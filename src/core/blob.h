@@ -7,9 +7,15 @@
 
 #include <lensprof/profile.h>
 
-#define LP_BLOB_LAYOUT 1
-#define LP_BLOB_LAYOUT_CIRCLE 2 /* the same with an image circle */
-#define LP_BLOB_FIXED 100       /* bytes before the parts of variable length */
+#include "core/features.h"
+
+#define LP_BLOB_FIXED 100 /* bytes before the parts of variable length */
+
+/* The layout is 1 and the sum of the parts that not every profile has. */
+enum lp_blob_part {
+    LP_BLOB_CIRCLE = 1, /* the image circle */
+    LP_BLOB_LEVELS = 2  /* black and white level */
+};
 
 /* Byte offsets of the fixed part. */
 enum lp_blob_offset {
@@ -67,6 +73,9 @@ typedef struct lp_model {
     lensprof_vignetting vignetting[3];
     uint32_t columns, rows, channels; /* of the gain grid; 0 = none */
     lensprof_image_circle circle;
+#if LP_HAS_LEVELS
+    lensprof_levels levels[2]; /* of input and output; all 0 = none */
+#endif
     const float *attenuation;
     const uint8_t *packed_attenuation;
 } lp_model;

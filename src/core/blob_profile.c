@@ -50,10 +50,16 @@ static texts texts_of(const lensprof_profile *p) {
 
 static int has_circle(const lensprof_profile *p) { return lp_profile_circle(p).radius > 0.0; }
 
+static int has_levels(const lensprof_profile *p) {
+    const lensprof_levels levels = lp_profile_levels(p);
+    return lp_has_levels(&levels);
+}
+
 static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
     const texts t = texts_of(p);
     size_t bytes = LP_BLOB_FIXED + p->vignettings * 3 * 8 + 4;
     if (has_circle(p)) bytes += 3 * 8;
+    if (has_levels(p)) bytes += 4 * 8;
     for (uint32_t c = 0; c < p->responses; c++) {
         bytes += 4 + 8 * modes_of(&p->response[c]) + (p->response[c].kind == LENSPROF_RESPONSE_GAMMA ? 8 : 0);
         if (has_samples(&p->response[c])) bytes += 4 * LENSPROF_RESPONSE_SAMPLES;
@@ -67,7 +73,7 @@ static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
 static void put_fixed(uint8_t **to, const lensprof_profile *p, uint32_t covariance, size_t bytes) {
     const texts t = texts_of(p);
     put(to, 0x4652504C, 4); /* "LPRF" */
-    put(to, has_circle(p) ? LP_BLOB_LAYOUT_CIRCLE : LP_BLOB_LAYOUT, 4);
+    put(to, 1u + (has_circle(p) ? LP_BLOB_CIRCLE : 0) + (has_levels(p) ? LP_BLOB_LEVELS : 0), 4);
     put(to, bytes, 4);
     put(to, p->key.processing, 1);
     put(to, p->responses, 1);
@@ -105,6 +111,9 @@ static void put_rest(uint8_t **to, const lensprof_profile *p, uint32_t covarianc
     const lensprof_image_circle circle = lp_profile_circle(p);
     for (int d = 0; d < 2 && has_circle(p); d++) put_f64(to, circle.center[d]);
     if (has_circle(p)) put_f64(to, circle.radius);
+    const lensprof_levels levels = lp_profile_levels(p);
+    for (int c = 0; c < 3 && has_levels(p); c++) put_f64(to, levels.black[c]);
+    if (has_levels(p)) put_f64(to, levels.white);
     for (uint32_t c = 0; c < p->responses; c++) put_response(to, &p->response[c]);
     for (uint32_t i = 0; i < nodes; i++) put_f32(to, p->grid.attenuation[i]);
     for (uint32_t i = 0; i < covariance; i++)
@@ -118,8 +127,6 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
     if (!profile || (!data && capacity) || flags & ~(uint32_t)LENSPROF_PACK_COVARIANCE) return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) return status;
-    const lensprof_levels levels = lp_profile_levels(profile);
-    if (lp_has_levels(&levels)) return LENSPROF_ERROR_UNSUPPORTED;
     const uint32_t covariance = flags & LENSPROF_PACK_COVARIANCE ? profile->covariance_size : 0;
     const size_t bytes = bytes_of(profile, covariance);
     if (count) *count = bytes;
@@ -159,6 +166,12 @@ lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_
     const lensprof_status status = lp_blob_open(data, size, &b);
     if (status != LENSPROF_OK) return status;
     const lp_model *m = &b.model;
+#if LP_HAS_LEVELS
+    if (lp_has_levels(&m->levels[0]) && profile->struct_size < LP_END_OF(lensprof_profile, levels))
+        return LENSPROF_ERROR_UNSUPPORTED;
+#endif
+    if (m->circle.radius > 0.0 && profile->struct_size < LP_END_OF(lensprof_profile, image_circle))
+        return LENSPROF_ERROR_UNSUPPORTED;
     lensprof_profile_init_sized(profile, profile->struct_size);
     if (!lp_blob_key(&b, &profile->key) || !lp_blob_provenance(&b, &profile->provenance))
         return LENSPROF_ERROR_INTERNAL; /* both were read before */
@@ -167,6 +180,9 @@ lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_
     for (uint32_t c = 0; c < m->responses; c++) copy_response(&b, c, &profile->response[c]);
     memcpy(profile->vignetting, m->vignetting, sizeof profile->vignetting);
     if (profile->struct_size >= LP_END_OF(lensprof_profile, image_circle)) profile->image_circle = m->circle;
+#if LP_HAS_LEVELS
+    if (profile->struct_size >= LP_END_OF(lensprof_profile, levels)) profile->levels = m->levels[0];
+#endif
     profile->grid.columns = m->columns;
     profile->grid.rows = m->rows;
     profile->grid.channels = m->channels;

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "core/features.h"
+
 #define FRACTION ((1u << LP_LOG_SHIFT) - 1)
 
 /* ---- logarithms ---- */
@@ -117,14 +119,24 @@ static uint8_t code_of(const int32_t *thresholds, int32_t light) {
     return (uint8_t)code;
 }
 
-/* A linear 16-bit code times 2^gain, rounded to nearest, clipped. */
-static uint16_t multiplied(uint32_t code, int32_t gain) {
+/* A number of up to 25 bits times 2^gain, rounded to nearest; at most `largest`, which has up to 25 bits. */
+static uint32_t multiplied(uint32_t number, int32_t gain, uint32_t largest) {
     const int32_t octaves = gain >> LP_LOG_SHIFT; /* towards minus infinity */
-    if (octaves < -17 || !code) return 0;
-    if (octaves > 15) return 65535;
+    if (octaves < -26 || !number) return 0;
+    if (octaves > 25) return largest;
     const uint32_t shift = (uint32_t)(30 - octaves);
-    const uint64_t result = ((uint64_t)code * exp2_of((uint32_t)gain & FRACTION) + (1ull << (shift - 1))) >> shift;
-    return result < 65535 ? (uint16_t)result : 65535;
+    const uint64_t result = ((uint64_t)number * exp2_of((uint32_t)gain & FRACTION) + (1ull << (shift - 1))) >> shift;
+    return result < largest ? (uint32_t)result : largest;
+}
+
+/* A linear code times 2^gain, from black to black, so that noise about it keeps its mean; clipped. */
+static uint32_t linear_code(const lensprof_fixed_plan *plan, uint32_t code, uint32_t channel, int32_t gain) {
+    if (!LP_HAS_LEVELS || !plan->levels) return multiplied(code, gain, (uint32_t)plan->largest);
+    const int32_t light = (int32_t)(code << LP_LEVEL_SHIFT) - plan->black_in[channel];
+    const int32_t size = (int32_t)multiplied((uint32_t)(light < 0 ? -light : light), gain, 1u << 25);
+    const int32_t half = 1 << (LP_LEVEL_SHIFT - 1);
+    const int32_t result = ((light < 0 ? -size : size) + plan->black_out[channel] + half) >> LP_LEVEL_SHIFT;
+    return (uint32_t)(result < 0 ? 0 : result > plan->largest ? plan->largest : result);
 }
 
 static uint32_t get_code(uint32_t sample, const uint8_t *p) {
@@ -135,12 +147,22 @@ static uint32_t get_code(uint32_t sample, const uint8_t *p) {
 }
 
 static void put_sample(const lensprof_fixed_plan *plan, uint32_t code, uint32_t channel, int32_t gain, uint8_t *p) {
-    if (plan->sample == LENSPROF_SAMPLE_U8)
+    if (plan->decode_curves)
         *p = code_of(encode_table(plan, channel), decode_table(plan, channel)[code] + gain);
+    else if (plan->sample == LENSPROF_SAMPLE_U8)
+        *p = (uint8_t)linear_code(plan, code, channel, gain);
     else {
-        const uint16_t result = multiplied(code, gain);
+        const uint16_t result = (uint16_t)linear_code(plan, code, channel, gain);
         memcpy(p, &result, sizeof result);
     }
+}
+
+/* The share of white, in 65535ths, of a code from which black has been subtracted. */
+static uint32_t share_of_white(const lensprof_fixed_plan *plan, uint32_t code, uint32_t channel) {
+    if (!LP_HAS_LEVELS || !plan->levels) return plan->sample == LENSPROF_SAMPLE_U8 ? code * 257 : code;
+    const int32_t light = (int32_t)(code << LP_LEVEL_SHIFT) - plan->black_in[channel];
+    const uint64_t share = light > 0 ? (uint64_t)light * plan->per_span[channel] >> 16 : 0;
+    return share < 65535 ? (uint32_t)share : 65535;
 }
 
 /* ---- rows ---- */
@@ -159,7 +181,7 @@ static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8
     for (uint32_t n = 0; n < plan->samples; n++) {
         const uint32_t channel = plan->channel_of_sample[n];
         code[n] = get_code(plan->sample, from + n * bytes);
-        if (channel != LP_ALPHA) value[channel] = plan->sample == LENSPROF_SAMPLE_U8 ? code[n] * 257 : code[n];
+        if (channel != LP_ALPHA) value[channel] = share_of_white(plan, code[n], channel);
     }
     if (plan->neutral_white) approach_white(value, gain);
     for (uint32_t n = 0; n < plan->samples; n++) {

@@ -2,9 +2,11 @@
  * that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
 #include <string.h>
 
+#include "core/features.h"
 #include "core/fixed_plan.h"
 
-#define LARGEST_FACTOR (41 << LP_LOG_SHIFT) /* options allow 1e12, and its inverse */
+#define LARGEST_FACTOR (51 << LP_LOG_SHIFT) /* options allow 1e12, levels 1e3, and their inverses */
+#define LARGEST_LEVEL (1 << 24)             /* 65535 in the units of levels, rounded up */
 
 uint32_t lp_fixed_check(const lensprof_fixed_plan *plan) {
     const size_t before = offsetof(lensprof_fixed_plan, check) + sizeof plan->check;
@@ -52,11 +54,23 @@ static int are_gains_sound(const lensprof_fixed_plan *plan) {
     return 1;
 }
 
+/* Differences of codes and black fit into 25 bits. */
+static int are_levels_sound(const lensprof_fixed_plan *plan) {
+    if (plan->levels > LP_HAS_LEVELS || plan->reserved) return 0;
+    if (plan->largest < 0 || plan->largest > (plan->sample == LENSPROF_SAMPLE_U8 ? 255 : 65535)) return 0;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        const int32_t in = plan->black_in[c], out = plan->black_out[c];
+        if (in > LARGEST_LEVEL || out > LARGEST_LEVEL || in < -LARGEST_LEVEL / 2 || out < -LARGEST_LEVEL / 2) return 0;
+    }
+    return 1;
+}
+
 static int are_tables_sound(const lensprof_fixed_plan *plan) {
     const uint32_t decode = plan->decode_curves, encode = plan->encode_curves;
     const int32_t *table = (const int32_t *)(const void *)(plan + 1);
     const int is_coded = plan->sample == LENSPROF_SAMPLE_U8;
-    if (is_coded ? !is_one_or_three(decode) || !is_one_or_three(encode) : decode || encode) return 0;
+    const int is_linear = !decode && !encode && (!is_coded || plan->levels);
+    if (!is_linear && !(is_coded && is_one_or_three(decode) && is_one_or_three(encode))) return 0;
     if (plan->bytes != sizeof *plan + (decode + encode) * LP_CODES * sizeof *table) return 0;
     for (uint32_t i = 0; i < decode * LP_CODES; i++)
         if (size_of(table[i]) > size_of(LP_LOG_NONE)) return 0;
@@ -72,7 +86,8 @@ lensprof_status lensprof_fixed_plan_open(const void *data, size_t size, const le
     if (plan->bytes > size) return LENSPROF_ERROR_CAPACITY;
     if (plan->bytes < sizeof *plan || plan->bytes % 4 || plan->check != lp_fixed_check(plan))
         return LENSPROF_ERROR_CORRUPT;
-    if (!is_layout_sound(plan) || !is_reach_sound(plan) || !are_gains_sound(plan) || !are_tables_sound(plan))
+    if (!is_layout_sound(plan) || !is_reach_sound(plan) || !are_gains_sound(plan) || !are_levels_sound(plan)
+        || !are_tables_sound(plan))
         return LENSPROF_ERROR_CORRUPT;
     *result = plan;
     return LENSPROF_OK;

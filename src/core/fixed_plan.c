@@ -27,9 +27,21 @@ static int is_linear(const lensprof_apply_options *o, const lp_model *m, enum lp
     return linear;
 }
 
+/* Whether black of the channels differs, for input or output. */
+static int have_own_black(const lp_model *m) {
+    int differ = 0;
+    for (int end = LP_INPUT; end <= LP_OUTPUT && LP_HAS_LEVELS; end++) {
+        const double *black = lp_levels_of(m, end)->black;
+        differ = differ || black[0] != black[1] || black[2] != black[1];
+    }
+    return differ;
+}
+
 static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
-    if (o->source_sample != LENSPROF_SAMPLE_U8) return 0;
-    return is_linear(o, m, end) ? 1 : lp_curves(o, m);
+    const int is_linear_in = is_linear(o, m, LP_INPUT), is_linear_out = is_linear(o, m, LP_OUTPUT);
+    if (o->source_sample != LENSPROF_SAMPLE_U8 || (lp_model_has_levels(m) && is_linear_in && is_linear_out)) return 0;
+    if (have_own_black(m) && lensprof_layout_channels(o->source_layout) == 3) return 3;
+    return (end == LP_INPUT ? is_linear_in : is_linear_out) ? 1 : lp_curves(o, m);
 }
 
 static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
@@ -88,17 +100,31 @@ static int32_t log_of(double light) {
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }
 
+/* B of a sample 0..1. Grey is treated as green. */
+static double grey_of(const lensprof_fixed_plan *plan, const lp_model *m, enum lp_end end, uint32_t curve,
+                      double sample) {
+    if (!LP_HAS_LEVELS || !lp_has_levels(lp_levels_of(m, end))) return sample;
+    return lensprof_levels_to_value(lp_levels_of(m, end), plan->channels == 1 ? 1 : curve, sample);
+}
+
 static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     int32_t *table = (int32_t *)(void *)(plan + 1);
+    const int is_light = is_linear(o, m, LP_INPUT);
     for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES) {
         const struct lp_model_response response = response_of(o, m, LP_INPUT, c);
-        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(lp_model_invert(&response, code / 255.0));
+        for (uint32_t code = 0; code < LP_CODES; code++) {
+            const double grey = grey_of(plan, m, LP_INPUT, c, code / 255.0); /* above white, light is not clipped */
+            table[code] = log_of(is_light ? grey : lp_model_invert(&response, grey));
+        }
     }
     for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
         const struct lp_model_response response = response_of(o, m, LP_OUTPUT, c);
-        for (uint32_t code = 0; code < LP_CODES - 1; code++)
-            table[code] = log_of(lp_model_invert(&response, (code + 0.5) / 255.0));
-        table[LP_CODES - 1] = INT32_MAX;
+        for (uint32_t code = 0; code < LP_CODES; code++) {
+            const double grey = grey_of(plan, m, LP_OUTPUT, c, (code + 0.5) / 255.0);
+            table[code] = grey >= 1.0   ? INT32_MAX /* no code is whiter */
+                          : grey <= 0.0 ? INT32_MIN /* nor darker */
+                                        : log_of(lp_model_invert(&response, grey));
+        }
     }
 }
 
@@ -112,8 +138,6 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
                        "integers take U8 and U16 to the same, no planes, grid or dither");
-    if (LP_HAS_LEVELS && (o->levels || o->output_levels))
-        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take levels");
     if (LP_HAS_CIRCLE && m->circle.radius > 0.0)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take an image circle");
     if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
@@ -142,17 +166,48 @@ static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->encode_curves = (uint8_t)tables_of(o, m, LP_OUTPUT);
 }
 
-static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o) {
+static double full_scale_of(const lensprof_fixed_plan *plan) {
+    return plan->sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0;
+}
+
+#if LP_HAS_LEVELS
+static int32_t level_of(const lensprof_fixed_plan *plan, double sample) {
+    return (int32_t)floor(full_scale_of(plan) * sample * (1 << LP_LEVEL_SHIFT) + 0.5);
+}
+
+static void prepare_levels(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
+    const lensprof_levels *in = lp_levels_of(m, LP_INPUT), *out = lp_levels_of(m, LP_OUTPUT);
+    if (!lp_model_has_levels(m)) return;
+    plan->levels = 1;
+    for (uint32_t row = 0; row < LP_CHANNELS; row++) {
+        const uint32_t c = plan->channels == 1 ? 1 : row; /* grey is treated as green */
+        plan->black_in[row] = level_of(plan, in->black[c]);
+        plan->black_out[row] = level_of(plan, out->black[c]);
+        plan->per_span[row] = (uint32_t)(65535.0 * 65536.0 / level_of(plan, lp_level_span(in, c)) + 0.5);
+    }
+    plan->largest = (int32_t)floor(full_scale_of(plan) * lp_highlight_level(o, m, !plan->decode_curves) + 0.5);
+}
+#endif
+
+/* The ratio of exposures and, if codes stay codes, of white less black. */
+static double factor_of(const lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m,
+                        uint32_t channel) {
+    const double ratio = lp_exposure_ratio(o, channel);
+    if (!LP_HAS_LEVELS || plan->decode_curves) return ratio;
+    const double spans =
+        lp_level_span(lp_levels_of(m, LP_OUTPUT), channel) / lp_level_span(lp_levels_of(m, LP_INPUT), channel);
+    return plan->simulate ? ratio / spans : ratio * spans;
+}
+
+static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     plan->falloffs = plan->gains = 1;
     for (uint32_t c = 0; c < LP_CHANNELS; c++)
-        plan->factor[c] = log_of(lp_exposure_ratio(o, plan->channels == 1 ? 1 : c)); /* grey is treated as green */
+        plan->factor[c] = log_of(factor_of(plan, o, m, plan->channels == 1 ? 1 : c)); /* grey is treated as green */
     for (uint32_t c = 1; c < plan->channels; c++) {
         if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0])) plan->falloffs = 3;
         if (plan->falloffs == 3 || plan->factor[c] != plan->factor[0]) plan->gains = 3;
     }
-    plan->neutral_white = o->saturated == LENSPROF_SATURATED_NEUTRAL && !plan->simulate && plan->samples >= 3
-                          && plan->gains == 3 && o->input == LENSPROF_ENCODING_RESPONSE
-                          && o->output == LENSPROF_ENCODING_RESPONSE;
+    plan->neutral_white = lp_is_neutral_white(o) && plan->gains == 3;
 }
 
 lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lensprof_apply_options *given,
@@ -168,7 +223,11 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lenspr
     prepare_layout(&head, options, &model);
     if (!prepare_falloffs(&head, options, &model))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "the falloff is too steep for integers");
-    prepare_gains(&head, options);
+    prepare_gains(&head, options, &model);
+    head.largest = (int32_t)full_scale_of(&head);
+#if LP_HAS_LEVELS
+    prepare_levels(&head, options, &model);
+#endif
     head.magic = LP_FIXED_MAGIC;
     head.bytes = (uint32_t)bytes_of(options, &model);
     if (size < head.bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);

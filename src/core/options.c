@@ -90,15 +90,26 @@ static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m) 
 lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
     if (!is_output_stated(o)) return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = view_model(o, m);
+#if LP_HAS_LEVELS
+    if (o->levels || o->output_levels) { /* instead of a blob's */
+        memset(m->levels, 0, sizeof m->levels);
+        if (o->levels) m->levels[LP_INPUT] = *o->levels;
+        if (o->output_levels) m->levels[LP_OUTPUT] = *o->output_levels;
+    }
+#endif
     m->outputs = o->output_responses;
     for (uint32_t c = 0; c < m->outputs; c++) view_response(&m->output[c], &o->output_response[c]);
     return status;
 }
 
-const lensprof_levels *lp_levels_of(const lensprof_apply_options *o, enum lp_end end) {
+const lensprof_levels *lp_levels_of(const lp_model *m, enum lp_end end) {
+#if LP_HAS_LEVELS
+    return &m->levels[end];
+#else
     static const lensprof_levels none;
-    const lensprof_levels *levels = end == LP_INPUT ? o->levels : o->output_levels;
-    return levels ? levels : &none;
+    (void)m, (void)end;
+    return &none;
+#endif
 }
 
 /* Otherwise channels need tables of their own. */
@@ -108,7 +119,7 @@ static inline int has_one_black(const lensprof_levels *levels) {
 
 uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
     if (lensprof_layout_channels(o->source_layout) == 1) return 1;
-    return m->responses == 3 || m->outputs == 3 || (LP_HAS_LEVELS && !has_one_black(lp_levels_of(o, LP_INPUT))) ? 3 : 1;
+    return m->responses == 3 || m->outputs == 3 || (LP_HAS_LEVELS && !has_one_black(lp_levels_of(m, LP_INPUT))) ? 3 : 1;
 }
 
 const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
@@ -170,6 +181,21 @@ double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
     return lp_exposure_factor(&o->target, channel) / lp_exposure_factor(&o->source, channel);
 }
 
+#if LP_HAS_LEVELS
+double lp_highlight_level(const lensprof_apply_options *o, const lp_model *m, int is_linear) {
+    const lensprof_levels *levels = lp_levels_of(m, LP_OUTPUT);
+    const int is_neutral = o->saturated == LENSPROF_SATURATED_NEUTRAL && o->direction == LENSPROF_DIRECTION_CORRECT
+                           && lensprof_layout_channels(o->source_layout) == 3 && !lp_is_neutral_white(o) && is_linear
+                           && lp_model_has_levels(m);
+    double least = 1.0;
+    for (uint32_t c = 0; c < 3 && is_neutral; c++) {
+        const double ratio = lp_exposure_ratio(o, c);
+        if (ratio < least) least = ratio;
+    }
+    return levels->black[1] + least * lp_level_span(levels, 1);
+}
+#endif
+
 static lensprof_status validate_exposures(const lensprof_apply_options *o, lensprof_error *error) {
     lensprof_status status = lensprof_exposure_validate(&o->source);
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
@@ -195,8 +221,8 @@ static lensprof_status validate_options(const lensprof_apply_options *o, lenspro
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return lp_fail(error, LENSPROF_ERROR_SIZE, "frame size is 0, or over 2^20");
 #if LP_HAS_LEVELS
-    if (lensprof_levels_validate(lp_levels_of(o, LP_INPUT)) != LENSPROF_OK
-        || lensprof_levels_validate(lp_levels_of(o, LP_OUTPUT)) != LENSPROF_OK)
+    if ((o->levels && lensprof_levels_validate(o->levels) != LENSPROF_OK)
+        || (o->output_levels && lensprof_levels_validate(o->output_levels) != LENSPROF_OK))
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "levels: black is not below white");
 #endif
 #if LP_HAS_CIRCLE

@@ -4,6 +4,7 @@
 
 #include "core/blob.h"
 #include "core/image.h"
+#include "core/levels.h"
 #include "core/sized.h"
 
 #define LP_LARGEST_GAIN_CAP 1e6 /* over all attenuations that are allowed */
@@ -32,7 +33,12 @@ const struct lp_model_response *lp_response(const lensprof_apply_options *option
                                             enum lp_end end, uint32_t curve);
 
 /* Levels of the input or output, which may be none. */
-const lensprof_levels *lp_levels_of(const lensprof_apply_options *options, enum lp_end end);
+const lensprof_levels *lp_levels_of(const lp_model *model, enum lp_end end);
+
+static inline int lp_model_has_levels(const lp_model *m) {
+    return LP_HAS_LEVELS
+           && (lp_has_levels(lp_levels_of(m, LP_INPUT)) || lp_has_levels(lp_levels_of(m, LP_OUTPUT)));
+}
 
 /* Whether a response is a power of light (including the first power) rather than a table. */
 static inline int lp_is_power(const struct lp_model_response *response) {
@@ -47,5 +53,17 @@ double lp_center(const lensprof_apply_options *options, const lp_model *model, i
 
 /* Target over source exposure of a channel. */
 double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel);
+
+/* Whether LENSPROF_SATURATED_NEUTRAL applies to encoded pixels of three channels. */
+static inline int lp_is_neutral_white(const lensprof_apply_options *o) {
+    return o->saturated == LENSPROF_SATURATED_NEUTRAL && o->direction != LENSPROF_DIRECTION_SIMULATE
+           && lensprof_layout_channels(o->source_layout) == 3 && !lp_is_mosaic(o->source_layout)
+           && o->input == LENSPROF_ENCODING_RESPONSE && o->output == LENSPROF_ENCODING_RESPONSE;
+}
+
+/* The sample at which the output of pictures with levels is clipped: white. So that clipped highlights of linear output
+ * are neutral (LENSPROF_SATURATED_NEUTRAL), it is that of a saturated sample of the channel with the least exposure
+ * ratio, where this is less. */
+double lp_highlight_level(const lensprof_apply_options *options, const lp_model *model, int is_linear);
 
 #endif

@@ -48,21 +48,22 @@ static double full_scale_of(uint32_t sample) {
 }
 
 /* White less black in the linear numbers of a kernel: without a curve in between, codes stay codes. */
-static double white_of(const lensprof_plan *plan, const lensprof_apply_options *o, enum lp_end end, uint32_t channel) {
+static double white_of(const lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
+                       uint32_t channel) {
     if ((end == LP_INPUT ? plan->decode : plan->encode) != LP_CURVE_NONE) return 1.0;
     const double full = full_scale_of(end == LP_INPUT ? o->source_sample : o->target_sample);
-    return LP_HAS_LEVELS ? full * lp_level_span(lp_levels_of(o, end), channel) : full;
+    return LP_HAS_LEVELS ? full * lp_level_span(lp_levels_of(m, end), channel) : full;
 }
 
 #if LP_HAS_LEVELS
-static void prepare_levels(lensprof_plan *plan, const lensprof_apply_options *o) {
-    const lensprof_levels *in = lp_levels_of(o, LP_INPUT), *out = lp_levels_of(o, LP_OUTPUT);
+static void prepare_levels(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
+    const lensprof_levels *in = lp_levels_of(m, LP_INPUT), *out = lp_levels_of(m, LP_OUTPUT);
     struct lp_plan_levels *l = &plan->levels;
     const double in_scale = full_scale_of(plan->source_sample), out_scale = full_scale_of(plan->target_sample);
     const int is_in_code = plan->decode == LP_CURVE_NONE, is_out_code = plan->encode == LP_CURVE_NONE;
     if (lp_has_levels(in) && !plan->inverse) l->steps |= LP_LEVELS_IN;
     if (lp_has_levels(out)) l->steps |= LP_LEVELS_OUT;
-    l->largest_code = (float)(out_scale * lp_white_level(out));
+    l->largest_code = (float)floor(out_scale * lp_highlight_level(o, m, is_out_code) + 0.5);
     l->are_one = 1;
     float least = 0.0f;
     for (uint32_t row = 0; row < LP_CHANNELS; row++) {
@@ -88,8 +89,8 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     double scale = plan->columns ? 1.0 : o->strength;
     for (int n = 0; n < 3; n++) plan->k[row][n] = (float)(k[n] * (scale *= per_rho2));
     const double units =
-        (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(plan, o, LP_OUTPUT, channel))
-        / white_of(plan, o, LP_INPUT, channel);
+        (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(plan, o, m, LP_OUTPUT, channel))
+        / white_of(plan, o, m, LP_INPUT, channel);
     const double ratio = lp_exposure_ratio(o, channel);
     plan->factor[row] = (float)(plan->simulate ? ratio / units : ratio * units);
     plan->times[row] = 1.0f;
@@ -160,13 +161,11 @@ lensprof_status lensprof_plan_init(void *memory, size_t size, const lensprof_app
     plan->target_sample = options->target_sample;
     plan->dither = options->dither && options->target_sample == LENSPROF_SAMPLE_U8;
     prepare_layout(plan, options);
-    plan->neutral_white = options->saturated == LENSPROF_SATURATED_NEUTRAL && !plan->simulate && plan->channels == 3
-                          && !lp_is_mosaic(plan->layout) && options->input == LENSPROF_ENCODING_RESPONSE
-                          && options->output == LENSPROF_ENCODING_RESPONSE;
+    plan->neutral_white = (uint32_t)lp_is_neutral_white(options);
     float *tables = (float *)(void *)(plan + 1);
     tables = lp_prepare_curves(plan, options, &model, tables);
 #if LP_HAS_LEVELS
-    prepare_levels(plan, options);
+    prepare_levels(plan, options, &model);
 #endif
     prepare_grid(plan, &model, tables);
     prepare_gains(plan, options, &model);

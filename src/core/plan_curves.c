@@ -7,10 +7,6 @@
 #include "core/levels.h"
 #include "core/response.h"
 
-static int has_levels(const lensprof_apply_options *o) {
-    return LP_HAS_LEVELS && (lp_has_levels(lp_levels_of(o, LP_INPUT)) || lp_has_levels(lp_levels_of(o, LP_OUTPUT)));
-}
-
 /* The common kind of curve of all channels, for input or output. With levels, a linear response does not clip: noise
  * about black keeps its mean. */
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
@@ -23,7 +19,7 @@ static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum
         kind = c && curve_kind != kind ? (uint32_t)LP_CURVE_MIXED : curve_kind;
         if (kind == LP_CURVE_MIXED) break;
     }
-    return kind == LP_CURVE_CLIP && has_levels(o) ? (uint32_t)LP_CURVE_NONE : kind;
+    return kind == LP_CURVE_CLIP && lp_model_has_levels(m) ? (uint32_t)LP_CURVE_NONE : kind;
 }
 
 static int is_integer(uint32_t sample) { return sample == LENSPROF_SAMPLE_U8 || sample == LENSPROF_SAMPLE_U16; }
@@ -33,7 +29,7 @@ static uint32_t decode_of(const lensprof_apply_options *o, const lp_model *m) {
     uint32_t kind = o->input == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m, LP_INPUT);
     if (!is_integer(o->source_sample)) return kind;
     if (kind == LP_CURVE_CLIP) return LP_CURVE_NONE;
-    if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16 && !has_levels(o)) return kind;
+    if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16 && !lp_model_has_levels(m)) return kind;
     return kind == LP_CURVE_NONE ? kind : (uint32_t)LP_CURVE_TABLE;
 }
 
@@ -120,7 +116,7 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
         plan->exponent[c] = lp_is_power(out) ? (float)(1.0 / out->gamma) : 0.0f;
         plan->inverse_exponent[c] = lp_is_power(in) ? (float)in->gamma : 0.0f;
         if (codes)
-            fill_inverse(in, LP_HAS_LEVELS ? lp_levels_of(o, LP_INPUT) : NULL, plan->channels == 1 ? 1 : c, codes,
+            fill_inverse(in, LP_HAS_LEVELS ? lp_levels_of(m, LP_INPUT) : NULL, plan->channels == 1 ? 1 : c, codes,
                          inverse + c * codes);
         float *to = memory + c * forward; /* f of the output, then that of the input if it has another table */
         const struct lp_model_response *response = out;

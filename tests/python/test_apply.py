@@ -53,6 +53,16 @@ class Fixed(unittest.TestCase):
             np.testing.assert_array_equal(lp.FixedPlan.open(plan.data, fields.source_layout).apply(tile, x0=5, y0=10),
                                           result[10:20, 5:25])
 
+    def test_a_mosaic_of_12_bit(self):
+        levels = lp.Levels(black=[256 / 65535] * 3, white=4095 / 65535)
+        fields = options(source_sample=lp.SampleType.U16, target_sample=lp.SampleType.U16, levels=levels,
+                         output_levels=levels, source_layout=lp.Layout.RGGB, response=lp.Response())
+        array = np.random.default_rng(3).integers(200, 4096, (30, 40)).astype(np.uint16)
+        result = lp.FixedPlan(fields).apply(array)
+        wanted = np.minimum(256 + (array.astype(float) - 256) / falloff(30, 40), 4095)
+        self.assertLessEqual(np.abs(result - wanted).max(), 0.51)
+        self.assertLessEqual(np.abs(lp.Plan(fields).apply(array).astype(int) - result).max(), 1)
+
     def test_what_is_refused(self):
         plan = lp.FixedPlan(options())
         self.assertLess(len(plan.data), 5000)

@@ -73,7 +73,8 @@ static inline double wanted_at(const fixture *f, uint32_t i) {
                  code = value_at(f->in, f->from.sample, i);
     const int c = channel_at(f->from.layout, i % samples, x, f->y0);
     if (c < 0) return code;
-    return floor(unit * fmin(fmax(reference(&f->m, code / unit, (uint32_t)c, x, f->y0), 0.0), 1.0) + 0.5);
+    return floor(unit * fmin(fmax(reference(&f->m, code / unit, (uint32_t)c, x, f->y0), 0.0), white_of_output(&f->m))
+                 + 0.5);
 }
 
 #endif

@@ -83,11 +83,32 @@ static void random_model(model *m, uint64_t *random) {
     }
 }
 
+/* Levels of a sensor, of one pedestal or one per channel. */
+static void random_levels(lensprof_levels *levels, uint64_t *random) {
+    const double black = 0.2 * lp_random(random) - 0.05;
+    const int is_one = lp_random(random) < 0.5;
+    for (int c = 0; c < 3; c++) levels->black[c] = is_one ? black : black + 0.1 * lp_random(random);
+    levels->white = lp_random(random) < 0.3 ? 0.0 : 0.5 + 0.5 * lp_random(random);
+}
+
+static inline void random_levels_of_model(model *m, uint64_t *random) {
+    for (int end = 0; end < 2; end++) random_levels(&m->levels[end], random);
+    m->options.levels = lp_random(random) < 0.8 ? &m->levels[0] : NULL;
+    m->options.output_levels = lp_random(random) < 0.7 ? m->options.levels : &m->levels[1];
+}
+
+static inline double white_of_output(const model *m) {
+    const lensprof_levels *levels = m->options.output_levels;
+    return levels && levels->white > 0.0 ? levels->white : 1.0;
+}
+
 static int has_levels(const model *m) { return m->options.levels || m->options.output_levels; }
 
-static int are_linear(const lensprof_response *responses, uint32_t count) {
+/* Those that a layout uses: grey that of green. */
+static int are_linear(const lensprof_response *responses, uint32_t count, uint32_t layout) {
+    const int is_grey = lensprof_layout_channels(layout) == 1;
     for (uint32_t c = 0; c < count; c++)
-        if (responses[c].kind != LENSPROF_RESPONSE_LINEAR) return 0;
+        if (responses[c].kind != LENSPROF_RESPONSE_LINEAR && !(is_grey && count == 3 && c != 1)) return 0;
     return 1;
 }
 
@@ -108,11 +129,12 @@ static double reference(const model *m, double sample, uint32_t c, uint32_t x, u
     double ratio =
         (exp2(o->target.ev) * o->target.white_balance[c]) / (exp2(o->source.ev) * o->source.white_balance[c]);
     const int any = has_levels(m);
-    const int linear_in = o->input == LENSPROF_ENCODING_LINEAR || (any && are_linear(m->response, o->responses));
+    const int linear_in =
+        o->input == LENSPROF_ENCODING_LINEAR || (any && are_linear(m->response, o->responses, o->source_layout));
     const int linear_out = o->output == LENSPROF_ENCODING_LINEAR
                            || (any
-                               && (o->output_responses ? are_linear(m->output, o->output_responses)
-                                                       : are_linear(m->response, o->responses)));
+                               && (o->output_responses ? are_linear(m->output, o->output_responses, o->source_layout)
+                                                       : are_linear(m->response, o->responses, o->source_layout)));
     double light = linear_in ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
     light = linear_out ? light : lensprof_response_eval(out, light, NULL);

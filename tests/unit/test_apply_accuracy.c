@@ -10,20 +10,6 @@ enum {
     PIXELS = 900
 };
 
-/* Levels of a sensor, of one pedestal or one per channel. */
-static void random_levels(lensprof_levels *levels, uint64_t *random) {
-    const double black = 0.2 * lp_random(random) - 0.05;
-    const int is_one = lp_random(random) < 0.5;
-    for (int c = 0; c < 3; c++) levels->black[c] = is_one ? black : black + 0.1 * lp_random(random);
-    levels->white = lp_random(random) < 0.3 ? 0.0 : 0.5 + 0.5 * lp_random(random);
-}
-
-static void random_levels_of_model(model *m, uint64_t *random) {
-    for (int end = 0; end < 2; end++) random_levels(&m->levels[end], random);
-    m->options.levels = lp_random(random) < 0.8 ? &m->levels[0] : NULL;
-    m->options.output_levels = lp_random(random) < 0.7 ? m->options.levels : &m->levels[1];
-}
-
 /* Change of a result by the rounding of a sample near 1 and of black to single precision. */
 static double reach_of_rounding(const model *m, double value, uint32_t c, uint32_t x, uint32_t y) {
     return fabs(reference(m, value + 6e-8, c, x, y) - reference(m, value - 6e-8, c, x, y));
@@ -68,9 +54,7 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
             if (has_levels(m)) /* a difference of single numbers, which a steep curve enlarges near black */
                 error = fmax(0.0, error - 65535.0 * reach_of_rounding(m, value, i % 3, x0 + i / 3, y));
         } else {
-            const lensprof_levels *out_levels = m->options.output_levels;
-            const double white = out_levels && out_levels->white > 0.0 ? out_levels->white : 1.0;
-            wanted = floor(unit * fmin(fmax(wanted, 0.0), white) + 0.5);
+            wanted = floor(unit * fmin(fmax(wanted, 0.0), white_of_output(m)) + 0.5);
             error = fabs((sample == LENSPROF_SAMPLE_U8 ? out.u8[i] : out.u16[i]) - wanted);
         }
         *same += error == 0.0;

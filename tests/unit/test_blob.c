@@ -262,7 +262,7 @@ static void test_newer_layouts(void **state) {
     (void)state;
     size_t bytes;
     uint8_t *blob = golden_blob(1, &bytes);
-    blob[4] = 3; /* not sealed: damaged */
+    blob[4] = 5; /* not sealed: damaged */
     assert_refused(blob, bytes, LENSPROF_ERROR_CORRUPT);
     seal(blob, bytes);
     assert_refused(blob, bytes, LENSPROF_ERROR_LAYOUT);

@@ -181,7 +181,7 @@ static void test_plan_refuses(void **state) {
         REFUSED((void)0, LENSPROF_ERROR_CORRUPT);
         blob[bit / 8] ^= (uint8_t)(1 << bit % 8);
     }
-    blob[4] = 3;
+    blob[4] = 5;
     seal(blob, bytes);
     REFUSED((void)0, LENSPROF_ERROR_LAYOUT);
     blob[4] = 1;

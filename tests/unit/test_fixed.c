@@ -20,7 +20,15 @@ static double worst_error(const fixture *f, double *same, double *all) {
     return worst;
 }
 
-static void check_levels(uint32_t sample, double smallest_share) {
+static void as_drawn(fixture *f, uint64_t *random) { (void)f, (void)random; }
+
+static void with_levels(fixture *f, uint64_t *random) {
+    do random_levels_of_model(&f->m, random);
+    while (!has_levels(&f->m));
+    make_plan(f);
+}
+
+static void check_codes(uint32_t sample, void (*change)(fixture *f, uint64_t *random), double smallest_share) {
     uint64_t random = 5;
     double worst = 0.0, same = 0.0, all = 0.0;
     static fixture f;
@@ -32,6 +40,7 @@ static void check_levels(uint32_t sample, double smallest_share) {
             f.m.options.output_response = f.m.output, f.m.options.output_responses = n % 2 ? 1 : 3;
             make_plan(&f);
         }
+        change(&f, &random);
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
         worst = fmax(worst, worst_error(&f, &same, &all));
     }
@@ -42,12 +51,22 @@ static void check_levels(uint32_t sample, double smallest_share) {
 
 static void test_8_bit_are_within_a_level(void **state) {
     (void)state;
-    check_levels(LENSPROF_SAMPLE_U8, 0.9999);
+    check_codes(LENSPROF_SAMPLE_U8, as_drawn, 0.9999);
 }
 
 static void test_16_bit_are_within_a_level(void **state) {
     (void)state;
-    check_levels(LENSPROF_SAMPLE_U16, 0.95);
+    check_codes(LENSPROF_SAMPLE_U16, as_drawn, 0.95);
+}
+
+static void test_8_bit_with_levels_are_within_a_level(void **state) {
+    (void)state;
+    check_codes(LENSPROF_SAMPLE_U8, with_levels, 0.999);
+}
+
+static void test_16_bit_with_levels_are_within_a_level(void **state) {
+    (void)state;
+    check_codes(LENSPROF_SAMPLE_U16, with_levels, 0.95);
 }
 
 /* Extreme curves, falloffs near the permitted limits, centres far outside, small frames, large exposures. */
@@ -368,6 +387,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_8_bit_are_within_a_level),
         cmocka_unit_test(test_16_bit_are_within_a_level),
+        cmocka_unit_test(test_8_bit_with_levels_are_within_a_level),
+        cmocka_unit_test(test_16_bit_with_levels_are_within_a_level),
         cmocka_unit_test(test_wild_models_are_within_a_level),
         cmocka_unit_test(test_nothing_to_do_changes_nothing),
         cmocka_unit_test(test_white_stays_white),

@@ -23,10 +23,6 @@ BlobStamp stamp_of(const unsigned char *blob, size_t bytes) {
 }  // namespace
 
 BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, const std::string &path) {
-    if (lensprof_profile_pack(&profile, 0, nullptr, 0, nullptr) == LENSPROF_ERROR_UNSUPPORTED)
-        throw Failure(LENSPROF_ERROR_UNSUPPORTED,
-                      path + ": a blob does not hold black and white levels; subtract them before the correction, and "
-                             "measure the profile on such pictures");
     const uint32_t flags = with_covariance ? LENSPROF_PACK_COVARIANCE : 0;
     const std::string blob = written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *) {
         return lensprof_profile_pack(&profile, flags, data, capacity, count);
