@@ -8,14 +8,14 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFewest = 16;           // places
 constexpr double kRoundShare = 0.95;     // of the places, near the circle
 constexpr double kFarthestCircle = 0.5;  // half diagonals: a straight outline is not a circle
 
 }  // namespace
 
-std::optional<lensprof_image_circle> circle_through(const std::vector<std::array<double, 2>> &places, double slack) {
-    if (places.size() < kFewest) return std::nullopt;
+std::optional<lensprof_image_circle> circle_through(const std::vector<std::array<double, 2>> &places, double slack,
+                                                    size_t fewest) {
+    if (places.size() < fewest) return std::nullopt;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (const auto &place : places) {

@@ -106,15 +106,13 @@ Curve best_about_middle(const lensprof_profile &profile, Frame frame) {
     Curve best = mean_curve(profile);
     std::vector<FrameSample> samples = samples_of(profile, frame);
     double least = worst_of(errors_of(best, samples));
-    bool is_curve = false;
-    for (int count = 3; count > 0 && !is_curve; count--) {
+    for (int count = 3; count > 0; count--) {
         for (FrameSample &at : samples) at.weight = 1.0;
         for (int round = 0; round < kRounds; round++) {
             const Curve k = refit_samples(samples, count);
             const std::vector<double> errors = errors_of(k, samples);
             const double worst = worst_of(errors);
-            is_curve = is_valid(k);
-            if (is_curve && worst < least) least = worst, best = k;
+            if (is_valid(k) && worst < least) least = worst, best = k;
             if (!(worst > 0.0) || !std::isfinite(worst)) break;
             for (size_t i = 0; i < samples.size(); i++) samples[i].weight *= 1e-3 + errors[i] / worst;
         }

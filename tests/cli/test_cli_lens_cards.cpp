@@ -28,6 +28,7 @@ struct Card {
     double counts = 0.0;                 // float samples, of which so many are full scale
     double black = 0.0;                  // without light, share of full scale
     double middle = 0.5, noise = 0.002;  // shares of full scale
+    double largest = 1.0;                // likewise, at which samples saturate
 };
 
 // A value per square of 20 px, 0..1.
@@ -49,7 +50,8 @@ std::string shoot(const std::string &name, const Card &card) {
             light *= 1.0 - card.scene * thing_at(x, y);
             for (uint32_t c = 0; c < 3; c++) {
                 const double value =
-                    card.black + (1.0 - card.black) * std::clamp(light + card.noise * lp_normal(&random), 0.0, 1.0);
+                    card.black
+                    + (1.0 - card.black) * std::clamp(light + card.noise * lp_normal(&random), 0.0, card.largest);
                 if (card.counts > 0.0)
                     *count++ = static_cast<float>(card.counts * value);
                 else
@@ -350,6 +352,48 @@ void test_light_is_checked(void **) {
     assert_refused(not_usable,
                    flat_of({in_folder("light/0.tif")}, {"--check", in_folder("photographs"), "--aperture", "16"}),
                    {"no good setting of the cards", "0.tif", "differs in aperture"});
+}
+
+// Of cards of several settings, the pictures must state theirs: in EXIF, or in their names.
+void test_light_is_checked_with_the_setting_of_names(void **) {
+    must_exit(done, {"simulate", "-o", in_folder("stated"), "--response", "linear", "--format", "tiff16",
+                     "--vignetting", "-0.2,0.05,-0.02", "--images", "6", "--size", "480x360"});
+    fs::create_directories(in_folder("unnamed"));
+    fs::create_directories(in_folder("named"));
+    for (int n = 0; n < 6; n++) {  // without EXIF
+        const Picture picture = read_picture(in_folder(format("stated/img%03d.tif", n)), {});
+        write_picture(in_folder(format("unnamed/img%03d.tif", n)), picture, {});
+        write_picture(in_folder(format("named/35mm--5.6_%d.tif", n)), picture, {});
+    }
+    Card card{35.0, 2.8};
+    shoot("two/a.tif", card);
+    card.aperture = 5.6, card.k1 = -0.2;
+    shoot("two/b.tif", card);
+    const Words words = flat_of({in_folder("two")}, {"--black", "0"});
+    assert_refused(not_usable, words + Words{"--check", in_folder("unnamed")}, {"img00", "states the aperture", "35mm--2.8"});
+    const Json json = json_of(words + Words{"--json", "--check", in_folder("named")});
+    assert_true(contains(json["light"]["setting"].get<std::string>(), "5.6"));
+    assert_int_equal(json["light"]["removed_from"], 0);
+}
+
+// A black level above the corners is refused, by the name of the file and of the option.
+void test_a_black_level_above_the_corners(void **) {
+    const std::string file = shoot("above/a.tif", Card{24.0, 2.8});
+    assert_refused(not_usable, flat_of({file}, {"--black", "40%"}), {"a.tif", "below the black level", "--black"});
+}
+
+// A sensor of 14 bit in a file of 16 bit: what saturates is left out, though it is far below full scale.
+void test_samples_that_saturate_below_full_scale(void **) {
+    for (const double middle : {0.2, 0.255, 0.3}) {
+        Card card{24.0, 2.8};
+        card.middle = middle, card.largest = 16383.0 / 65535.0;
+        const std::string file = shoot(format("saturated/%g.tif", middle), card);
+        const Outcome outcome = run_words(flat_of({file}, {"--black", "0"}));
+        assert_int_equal(contains(outcome.err + outcome.out, "are 16383 of 65535"), middle > 0.21);
+        const Json setting =
+            parsed(must_exit(middle < 0.3 ? done : not_usable, flat_of({file}, {"--black", "0", "--json"})));
+        if (middle < 0.3) assert_float_equal(setting["corner"].get<double>(), 0.63, 0.006);
+    }
 }
 
 // Overlaps that nothing but --linear declares linear are linear, as the cards are: the light is known well.
@@ -743,14 +787,20 @@ void test_deep_falloffs_for_lensfun(void **) {
     const std::string csv = in_folder("deep.csv");
     const Words words =
         flat_of({in_folder("deep")}, {"-o", in_folder("deep.xml"), "-o", csv, "--key", "crop-factor=1"});
-    const Json json = json_of(words + Words{"--json"});
+    const Json json = parsed(must_exit(not_usable, words + Words{"--json"}));
     const Json &good = json["settings"][0], &deep = json["settings"][1];
     assert_true(good["usable"] == true && good["good_for_lens_file"] == true && good["lens_file_ev"] < 0.02);
     assert_true(deep["usable"] == true && deep["good_for_lens_file"] == false && deep["lens_file_ev"] > 0.1);
-    const std::string table = must_exit(done, words);
+    const std::string table = must_exit(not_usable, words);
     assert_true(contains(table, "good, but not for Lensfun: k1..k3 alone are off by")
-                && contains(table, "of which 1 off by more than 0.1 EV"));
+                && contains(table, ": 1 setting, without 1 that it would be off by more than 0.1 EV"));
     assert_true(contains(text_of(csv), "good, but not for Lensfun"));
+    const std::string xml = text_of(in_folder("deep.xml"));
+    assert_true(contains(xml, "aperture=\"2.8\"") && !contains(xml, "aperture=\"4\""));
+    std::filesystem::remove(in_folder("deep/a.tif"));  // nothing is left for the file
+    std::filesystem::remove(in_folder("deep.xml"));
+    must_exit(not_usable, words);
+    assert_false(std::filesystem::exists(in_folder("deep.xml")));
 }
 
 // Errors have two significant digits; an empty file is named, and its row of the table counts as used.
@@ -839,6 +889,9 @@ int main() {
         CLI_TEST(test_replaced_settings),
         CLI_TEST(test_what_can_be_written_is),
         CLI_TEST(test_deep_falloffs_for_lensfun),
+        CLI_TEST(test_light_is_checked_with_the_setting_of_names),
+        CLI_TEST(test_a_black_level_above_the_corners),
+        CLI_TEST(test_samples_that_saturate_below_full_scale),
         CLI_TEST(test_the_table),
         CLI_TEST(test_missing_settings_of_cameras),
         CLI_TEST(test_units_in_a_table),

@@ -128,23 +128,56 @@ static void a_dark_strip_leaves_the_rest(void **) {
     assert_close(found_falloff(*r, p, 479, 0), falloff(1.0), 0.005);
 }
 
-// Nor is the border of a scan, which darkens the corners as the tips of a circle would: wider than a cell, or narrower,
-// where only corners are mostly dark.
+// Nor is the border of a scan, which darkens the corners as the tips of a circle would: narrower than a cell, where
+// only corners are mostly dark, or wider; on all sides, or on those that two or three corners have.
 static void a_dark_border_is_no_circle(void **) {
-    for (const double width : {3.0, 5.0, 9.0}) {
+    for (const double width : {3.0, 5.0, 9.0, 16.0, 24.0})
+        for (const int sides : {15, 7, 5}) {  // left, right, top, bottom
+            FlatPictures p = small_card();
+            const auto falloff = law_of_the_cosine(0.5);
+            p.set_falloff(0.0, 0.0, falloff);
+            p.defect = [=, inside = p.defect](double x, double y, uint32_t c) {
+                const double from[] = {x, 479 - x, y, 319 - y};
+                bool is_border = false;
+                for (int side = 0; side < 4; side++) is_border = is_border || (sides >> side & 1 && from[side] < width);
+                return is_border ? 0.0001 : inside(x, y, c);
+            };
+            p.shoot(0);
+            const auto r = p.fit(p.options());
+            assert_true(r->image_circle.radius == 0.0);
+            if (!r->usable) {  // cells that are dark in part are next to a corner that is not
+                assert_true(sides != 15 && r->with(LENSPROF_REASON_CORNER_UNCERTAIN));
+                continue;
+            }
+            for (const auto &[x, y] : {std::array{40.0, 40.0}, {440.0, 40.0}, {40.0, 280.0}, {240.0, 160.0}})
+                assert_close(found_falloff(*r, p, x, y), falloff(radius_at(p, x, y)), 0.008);
+        }
+}
+
+// A circle that cuts off the tips of corners is found in the card where a dark strip does not cover two of them.
+static void a_strip_leaves_the_circle(void **) {
+    for (const int clean_card : {0, 1}) {
         FlatPictures p = small_card();
-        const auto falloff = law_of_the_cosine(0.5);
-        p.set_falloff(0.0, 0.0, falloff);
-        p.defect = [=, inside = p.defect](double x, double y, uint32_t c) {
-            return std::min({x, 479 - x, y, 319 - y}) < width ? 0.0001 : inside(x, y, c);
-        };
-        p.shoot(0);
+        p.set_falloff(0.0, 0.0, [](double r) { return r < 0.93 ? law_of_the_cosine(0.5)(r) : 0.0001; });
+        if (clean_card) p.shoot(0);
+        p.defect = [clean = p.defect](double x, double y, uint32_t c) { return x < 60.0 ? 0.0001 : clean(x, y, c); };
+        p.shoot(static_cast<uint32_t>(clean_card));
         const auto r = p.fit(p.options());
         assert_true(r->usable);
-        assert_true(r->image_circle.radius == 0.0 && r->edge_radius == 0.0);
-        for (const auto &[x, y] : {std::array{0.0, 0.0}, {479.0, 0.0}, {20.0, 300.0}, {470.0, 160.0}, {240.0, 160.0}})
-            assert_close(found_falloff(*r, p, x, y), falloff(radius_at(p, x, y)), 0.008);
+        assert_close(r->image_circle.radius, clean_card ? 0.93 : 0.0, 0.01);
+        assert_close(found_falloff(*r, p, 240.0, 20.0), law_of_the_cosine(0.5)(radius_at(p, 240.0, 20.0)), 0.005);
     }
+}
+
+// Nor are corners that are brighter than what lies before them.
+static void bright_corners_are_no_circle(void **) {
+    FlatPictures p = small_card();
+    p.set_falloff(0.0, 0.0, law_of_the_cosine(0.5));
+    p.defect = [inside = p.defect](double x, double y, uint32_t c) {
+        return inside(x, y, c) * (std::min(x, 479 - x) < 12 && std::min(y, 319 - y) < 12 ? 1.5 : 1.0);
+    };
+    p.shoot(0);
+    assert_true(p.fit(p.options())->image_circle.radius == 0.0);
 }
 
 static void one_light_is_noted(void **) {
@@ -297,6 +330,8 @@ int main(void) {
         cmocka_unit_test(what_lies_outside_the_image_circle_is_left_out),
         cmocka_unit_test(a_dark_strip_leaves_the_rest),
         cmocka_unit_test(a_dark_border_is_no_circle),
+        cmocka_unit_test(a_strip_leaves_the_circle),
+        cmocka_unit_test(bright_corners_are_no_circle),
         cmocka_unit_test(one_light_is_noted),
         cmocka_unit_test(the_light_is_even_where_that_describes_the_card),
         cmocka_unit_test(the_depth_is_not_taken_for_a_slope),

@@ -259,6 +259,19 @@ void test_bad_pointers_and_sizes(void **) {
     assert_int_equal(call(images, pairs, one, found, &o.result), LENSPROF_ERROR_STRUCT_SIZE);
 }
 
+// What follows a profile of an older version is not read.
+void test_profiles_of_an_older_version(void **) {
+    Simulation simulation = simulated(0.0, 0.0);
+    lensprof_profile right = profile_of(simulation, 1.0), older = right;
+    older.struct_size = offsetof(lensprof_profile, image_circle);
+    older.image_circle = {{0.0, 0.0}, 0.3};
+    Outcome wanted(2), found(2);
+    assert_ok(run(simulation, {&right}, wanted));
+    assert_ok(run(simulation, {&older}, found));
+    for (int ring = 0; ring < LENSPROF_TRIAL_RINGS; ring++)
+        assert_true(found.candidates[0].ring_ev[ring] == wanted.candidates[0].ring_ev[ring]);
+}
+
 // Any grey values, also black and white, and any falloff: figures are numbers.
 void test_any_values(void **) {
     Simulation simulation = simulated(0.0, 0.0);
@@ -289,6 +302,7 @@ int main(void) {
         cmocka_unit_test(test_bad_pairs),
         cmocka_unit_test(test_bad_profiles),
         cmocka_unit_test(test_bad_pointers_and_sizes),
+        cmocka_unit_test(test_profiles_of_an_older_version),
         cmocka_unit_test(test_any_values),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

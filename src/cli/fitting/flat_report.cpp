@@ -118,6 +118,10 @@ Json flat_json(const CardFit &report) {
                         {"inlier_share", fit.inlier_share}};
     json["corner"] = fit.corner;
     json["corner_sigma"] = fit.corner_sigma;
+    const lensprof_image_circle &circle = fit.image_circle;
+    json["image_circle"] = circle.radius > 0.0
+                               ? Json{{"center", {circle.center[0], circle.center[1]}}, {"radius", circle.radius}}
+                               : Json();
     json["edge"] = fit.edge_radius > 0.0 ? Json{{"radius", fit.edge_radius}, {"share", fit.edge_share}} : Json();
     json["light_ev"] = fit.light_ev;
     json["polynomial_error"] = fit.polynomial_error;

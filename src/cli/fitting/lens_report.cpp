@@ -159,11 +159,12 @@ void print_lens_file_notes(const LensCards &cards, std::ostream &out) {
     lines.print("note      ", out);
 }
 
-// How many of the settings in the file for Lensfun are not good there.
+// How many good settings the file for Lensfun does not hold.
 std::string off_text(const LensCards &cards) {
     size_t off = 0;
     for (size_t n = 0; n < cards.settings.size(); n++) off += !cards.is_good_for_lensfun(n);
-    return off ? format(", of which %zu off by more than %g EV", off, largest_lens_file_ev) : std::string();
+    return off ? format(", without %zu that it would be off by more than %g EV", off, largest_lens_file_ev)
+               : std::string();
 }
 
 void print_left_out(const LensCards &cards, std::ostream &out) {
@@ -292,28 +293,53 @@ std::string lens_csv(const LensCards &cards) {
     return text;
 }
 
-void make_lens_file(const LensFileSource &source, LensCards &cards) {
+namespace {
+
+// The good settings of which the file can have a share.
+struct LensFileSettings {
     std::vector<const lensprof_profile *> profiles;
     std::vector<std::string> names;
     std::vector<size_t> numbers;  // of the settings
+};
+
+LensFileSettings settings_for_file(const LensCards &cards) {
+    LensFileSettings chosen;
     for (size_t n = 0; n < cards.settings.size(); n++) {
         const MeasuredSetting &setting = cards.settings[n];
-        if (!setting.is_good()) continue;
-        profiles.push_back(setting.fit->profile.get());
-        names.push_back(setting.of.label);
-        numbers.push_back(n);
+        if (!setting.is_good() || !cards.is_good_for_lensfun(n)) continue;
+        chosen.profiles.push_back(setting.fit->profile.get());
+        chosen.names.push_back(setting.of.label);
+        chosen.numbers.push_back(n);
     }
-    if (profiles.empty()) return;
+    return chosen;
+}
+
+}  // namespace
+
+// What k1..k3 do not describe is left out: the file would be wrong where other programs use it.
+void make_lens_file(const LensFileSource &source, LensCards &cards) {
+    const LensFileSettings all = settings_for_file(cards);
+    if (all.profiles.empty()) return;
     LensFileCost cost;
-    cards.lens_file_text = lens_file_text(profiles, source.databases, source.into, cost, names);
-    cards.lens_file_notes = notes_of(cost, names);
+    cards.lens_file_text = lens_file_text(all.profiles, source.databases, source.into, cost, all.names);
     cards.lens_file_ev.assign(cards.settings.size(), NAN);
-    for (size_t i = 0; i < profiles.size(); i++) {
-        cards.lens_file_ev[numbers[i]] = cost.ev[i];
-        for (const std::string &about :
-             {note_of_levels(*profiles[i], names[i]), note_of_circle(*profiles[i], names[i])})
-            if (!about.empty()) cards.lens_file_notes.push_back(about);
+    for (size_t i = 0; i < all.numbers.size(); i++) cards.lens_file_ev[all.numbers[i]] = cost.ev[i];
+    const LensFileSettings written = settings_for_file(cards);
+    if (written.profiles.size() < all.profiles.size()) {
+        cost = {};
+        cards.lens_file_text.clear();
+        if (written.profiles.empty()) {
+            cards.lens_file_obstacle = format(
+                "holds k1..k3 alone, which are off by more than %g EV in a corner for all", largest_lens_file_ev);
+            return;
+        }
+        cards.lens_file_text = lens_file_text(written.profiles, source.databases, source.into, cost, written.names);
     }
+    cards.lens_file_notes = notes_of(cost, written.names);
+    for (size_t i = 0; i < written.profiles.size(); i++)
+        for (const std::string &about : {note_of_levels(*written.profiles[i], written.names[i]),
+                                         note_of_circle(*written.profiles[i], written.names[i])})
+            if (!about.empty()) cards.lens_file_notes.push_back(about);
 }
 
 void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &outputs) {
@@ -324,7 +350,9 @@ void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &out
 }
 
 ExitCode lens_exit_code(const LensCards &cards) {
-    if (cards.good() < cards.settings.size() || !cards.lens_file_obstacle.empty()) return ExitCode::not_usable;
+    bool are_good = cards.good() == cards.settings.size() && cards.lens_file_obstacle.empty();
+    for (size_t n = 0; n < cards.settings.size(); n++) are_good = are_good && cards.is_good_for_lensfun(n);
+    if (!are_good) return ExitCode::not_usable;
     return cards.left_out.empty() ? ExitCode::done : ExitCode::unreadable;
 }
 
@@ -345,7 +373,8 @@ void print_lens(const LensCards &cards, const std::string &database, bool with_n
     if (stored) out << "stored    " << counted(stored, "profile") << " in " << database << "\n";
     if (with_notes) print_lens_file_notes(cards, out);
     if (!cards.lens_file.empty())
-        out << "written   " << cards.lens_file << ": " << counted(cards.good(), "setting") << off_text(cards) << "\n";
+        out << "written   " << cards.lens_file << ": " << counted(settings_for_file(cards).numbers.size(), "setting")
+            << off_text(cards) << "\n";
     print_left_out(cards, out);
 }
 

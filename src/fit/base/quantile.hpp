@@ -11,7 +11,7 @@ namespace lensprof {
 // The value that would stand at a place if the values were sorted; reorders them. Quickselect whose partitions have no
 // branches to predict (Lomuto's, each value swapped): three times as fast as std::nth_element for the values of a cell.
 template <class Value>
-Value select(Value *values, size_t count, size_t place) {
+Value select(Value *values, size_t count, size_t place, int rounds = 40) {
     const auto move_to_front = [&](const auto &belongs) {
         size_t front = 0;
         for (size_t i = 0; i < count; i++) {
@@ -21,8 +21,7 @@ Value select(Value *values, size_t count, size_t place) {
         }
         return front;
     };
-    constexpr int kRounds = 40;  // bad pivots of more values than that are left to std::nth_element
-    for (int round = 0; count > 1 && round < kRounds; round++) {
+    for (int round = 0; count > 1 && round < rounds; round++) {  // bad pivots are left to std::nth_element
         const Value a = values[0], b = values[count / 2], c = values[count - 1];
         const Value pivot = std::max(std::min(a, b), std::min(std::max(a, b), c));
         size_t front = move_to_front([=](Value value) { return value < pivot; });

@@ -22,7 +22,7 @@ constexpr int kTip = 3;            // cells along a diagonal that a circle cuts 
 constexpr double kMissing = 0.25;  // less light, ln, than those before them continue to,
 constexpr double kMissingInBlack = 1.0;  // by more if it is black,
 constexpr int kBeforeTip = 8;            // of which these are taken
-constexpr int kCornersOfCircle = 3;      // of the frame that a circle about the middle cuts off at least
+constexpr size_t kCornersOfCircle = 3;   // of the frame that a circle about the middle cuts off at least
 constexpr double kOffCircle = 2.0;       // cells between a place of the outline and its circle
 
 struct DarkMap {
@@ -107,9 +107,8 @@ std::vector<bool> surround(const DarkMap &map, std::vector<int> &rim) {
         if (!std::isnan(light)) seen.push_back(light);
     std::vector<bool> dark(map.light.size()), found(map.light.size());
     if (seen.empty()) return found;
-    const auto place = seen.begin() + static_cast<std::ptrdiff_t>(kBright * static_cast<double>(seen.size() - 1));
-    std::nth_element(seen.begin(), place, seen.end());
-    for (size_t i = 0; i < dark.size(); i++) dark[i] = map.light[i] < *place + std::log(kDark);
+    const double limit = quantile(seen, kBright) + std::log(kDark);
+    for (size_t i = 0; i < dark.size(); i++) dark[i] = map.light[i] < limit;
     for (const auto &group : connected_cells(grid, dark, [](int, int) { return true; })) {
         int nearest = grid.columns, deepest = 0;
         std::vector<bool> member(dark.size());
@@ -144,8 +143,11 @@ int depth_of_tip(const DarkMap &map, const std::array<int, kTip + kBeforeTip> &c
     for (int depth = kTip; depth > 0; depth--) {
         const double noise = sum(depth - 1, [&](size_t i, double b) { return b * b * map.variance[i]; });
         const double sigma = std::sqrt(std::max(noise, squares / (kBeforeTip - 4)));
-        const bool is_black = map.is_black[static_cast<size_t>(cells[static_cast<size_t>(depth) - 1])];
-        if (-difference(depth - 1) > std::max(is_black ? kMissingInBlack : kMissing, 5.0 * sigma)) return depth;
+        const auto end = static_cast<size_t>(cells[static_cast<size_t>(depth) - 1]),
+                   next = static_cast<size_t>(cells[static_cast<size_t>(depth)]);
+        const double missing = map.is_black[end] ? kMissingInBlack : kMissing;
+        const bool is_darker = map.light[end] < map.light[next] - 0.5 * missing;  // not a bright corner
+        if (is_darker && -difference(depth - 1) > std::max(missing, 5.0 * sigma)) return depth;
     }
     return 0;
 }
@@ -181,24 +183,31 @@ bool is_at_border(const DarkMap &map, const Corner &corner) {
     return is_dark(corner.right, corner.down) || is_dark(corner.down, corner.right);
 }
 
-// Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many
-// it cuts off; fewer than three may be dust.
-int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
-    if (std::min(map.grid.columns, map.grid.rows) < 2 * (kTip + kBeforeTip)) return 0;
-    const std::array<Corner, 4> corners = corners_of(map.grid);
-    std::array<int, 4> depth{};
-    int cut = 0;
-    for (size_t n = 0; n < 4; n++) {
-        const bool is_dark = outside[static_cast<size_t>(corners[n].diagonal[0])];
-        if (!is_dark && !is_at_border(map, corners[n])) depth[n] = depth_of_tip(map, corners[n].diagonal);
-        cut += is_dark || depth[n] > 0;
+// Corners of the frame that an image circle cuts off within a few cells, too small for a dark place, are outside.
+// Returns a cell at the rim of every corner that is cut off, if they are three; fewer may be dust.
+std::vector<int> add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
+    constexpr int last = kTip + kBeforeTip - 1;
+    if (std::min(map.grid.columns, map.grid.rows) < 2 * (kTip + kBeforeTip)) return {};
+    struct Tip {
+        const Corner corner;
+        int depth;
+    };
+    std::vector<Tip> tips;
+    std::vector<int> cut;
+    for (const Corner &corner : corners_of(map.grid)) {
+        if (is_at_border(map, corner)) continue;
+        int dark = 0;
+        while (dark < last && outside[static_cast<size_t>(corner.diagonal[static_cast<size_t>(dark)])]) dark++;
+        if (dark == 0) tips.push_back({corner, depth_of_tip(map, corner.diagonal)});
+        const int depth = dark > 0 ? dark : tips.back().depth;
+        if (depth > 0) cut.push_back(corner.diagonal[static_cast<size_t>(depth - 1)]);
     }
-    for (size_t n = 0; n < 4 && cut >= kCornersOfCircle; n++) {
-        const Corner &corner = corners[n];
-        for (int i = 0; i < 2 * depth[n]; i++)
-            for (int j = 0; i + j < 2 * depth[n]; j++)
+    if (cut.size() < kCornersOfCircle) return {};
+    for (const auto &[corner, depth] : tips) {
+        for (int i = 0; i < 2 * depth; i++)
+            for (int j = 0; i + j < 2 * depth; j++)
                 outside[static_cast<size_t>(corner.diagonal[0] + i * corner.right + j * corner.down)] = true;
-        if (depth[n] > 0) rim.push_back(corner.diagonal[static_cast<size_t>(depth[n] - 1)]);
+        if (depth > 0) rim.push_back(corner.diagonal[static_cast<size_t>(depth - 1)]);
     }
     return cut;
 }
@@ -247,17 +256,33 @@ double inward_of(const DarkMap &map, int cell) {
     return std::isnan(missing) ? 0.5 : missing;
 }
 
-// The circle through the outline. Where it is not a circle, nearest is the distance of its nearest place.
-std::optional<lensprof_image_circle> outline_of(const DarkMap &map, const std::vector<int> &rim, double &nearest) {
-    std::vector<std::array<double, 2>> places;
-    nearest = INFINITY;
+// Where what is lit ends, half diagonals from the middle of the frame: at cells of a rim, the nearest, and those at the
+// frame's border, of which only a part may be in the frame, or without them.
+struct Outline {
+    std::vector<std::array<double, 2>> places, at_border;
+    double nearest = INFINITY;
+};
+
+Outline outline_of(const DarkMap &map, const std::vector<int> &rim) {
+    Outline outline;
     for (int cell : rim) {
         const auto [x, y] = place_of(map.grid, cell);
         const double far = std::hypot(x, y), part = 1.0 - inward_of(map, cell) * map.side / std::max(far, map.side);
-        if (distance_to_border(map.grid, cell) > 0) places.push_back({part * x, part * y});
-        nearest = std::min(nearest, part * far);
+        (distance_to_border(map.grid, cell) > 0 ? outline.places : outline.at_border).push_back({part * x, part * y});
+        outline.nearest = std::min(outline.nearest, part * far);
     }
-    return circle_through(places, kOffCircle * map.side);
+    return outline;
+}
+
+// Through the corners that it cuts off; about the middle of the frame if their places are too imprecise for a centre.
+lensprof_image_circle circle_of_corners(const DarkMap &map, const std::vector<int> &corners) {
+    constexpr double farthest = 0.1;  // half diagonals
+    const Outline outline = outline_of(map, corners);
+    std::vector<std::array<double, 2>> places = outline.places;
+    places.insert(places.end(), outline.at_border.begin(), outline.at_border.end());
+    const auto circle = circle_through(places, kOffCircle * map.side, places.size());
+    if (circle && std::hypot(circle->center[0], circle->center[1]) <= farthest) return *circle;
+    return {{0.0, 0.0}, outline.nearest};
 }
 
 // Cells beyond a radius of the circle that join what is outside, such as a line of cells along the frame's border that
@@ -279,10 +304,12 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     FlatEdge edge;
     std::vector<int> rim;
     edge.outside = surround(map, rim);
-    const int corners = add_tips(map, edge.outside, rim);
+    const std::vector<int> corners = add_tips(map, edge.outside, rim);
     if (rim.empty()) return edge;
-    edge.circle = outline_of(map, rim, edge.radius);
-    if (!edge.circle && corners >= kCornersOfCircle) edge.circle = lensprof_image_circle{{0.0, 0.0}, edge.radius};
+    const Outline outline = outline_of(map, rim);
+    edge.radius = outline.nearest;
+    edge.circle = circle_through(outline.places, kOffCircle * map.side);
+    if (!edge.circle && !corners.empty()) edge.circle = circle_of_corners(map, corners);
     if (edge.circle) edge.radius = edge.circle->radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;

@@ -281,7 +281,8 @@ void leave_out_surround(FlatFit &fit) {
         const FlatEdge edge = find_edge(fit.grid, static_cast<int>(fit.options.channels), shot);
         if (edge.radius == 0.0) continue;
         for (size_t i = 0; i < shot.card.size(); i++) shot.card[i] = shot.card[i] && !edge.outside[i];
-        if (edge.share > fit.edge.share) fit.edge = edge;
+        const bool has_circle = edge.circle.has_value();  // of a shot that shows it
+        if (has_circle == fit.edge.circle.has_value() ? edge.share > fit.edge.share : has_circle) fit.edge = edge;
     }
 }
 

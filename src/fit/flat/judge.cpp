@@ -235,7 +235,7 @@ Measured spots(const JudgedFlat &judged) {
 }
 
 Measured image_circle(const JudgedFlat &judged) {
-    return of_values(judged.r.image_circle.radius, judged.r.edge_radius, judged.r.edge_share);
+    return of_values(judged.r.image_circle.radius, judged.r.image_circle.radius, judged.r.edge_share);
 }
 
 Measured cover(const JudgedFlat &judged) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/profile.h"
 #include "fit/base/constants.hpp"
 #include "fit/trial/ring_fit.hpp"
 
@@ -29,13 +30,12 @@ RingMeans means_over(const TrialPairs &pairs, const TrialModel &model) {
     RingMeans means;
     const lensprof_pair &pair = pairs.train.empty() ? pairs.heldout.front() : pairs.train.front();
     const lensprof_fit_image &image = pairs.images[pair.image[0]];
+    const lensprof_image_circle circle = model.falloff ? lp_profile_circle(model.falloff) : lensprof_image_circle{};
     for (int j = 0; j < kAreaSide; j++)
         for (int i = 0; i < kAreaSide; i++) {
             const double x = (i + 0.5) / kAreaSide * (image.width - 1.0),
                          y = (j + 0.5) / kAreaSide * (image.height - 1.0);
-            if (model.falloff
-                && !lensprof_image_circle_contains(&model.falloff->image_circle, image.width, image.height, x, y))
-                continue;
+            if (!lensprof_image_circle_contains(&circle, image.width, image.height, x, y)) continue;
             const double r2 = r2_of(image, x, y);
             const int ring = ring_of(r2);
             means.area[ring]++;

@@ -63,6 +63,7 @@ SceneTrial::SceneTrial(const Scene &scene, bool are_linear, Events &events) : sc
     pairs_ = pairs_of_one_setting(scene, metadata, std::move(sampled.pairs), first, events);
     warn_of_earlier_correction(scene, metadata, events);
     key_ = metadata[first].key;
+    file_ = first < scene.files.size() ? scene.files[first] : scene.path;
     lensprof_trial_options_init(&options_);
     options_.channels = sampled.channels;
     options_.camera_kind = are_linear && metadata[first].may_be_linear ? static_cast<uint32_t>(LENSPROF_CAMERA_LINEAR)

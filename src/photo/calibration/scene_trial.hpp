@@ -31,6 +31,7 @@ public:
 
     // Of the image with most metadata.
     const lensprof_profile_key &key() const { return key_; }
+    const std::string &file() const { return file_; }
 
     // One candidate per profile, then without falloff; `result` may be NULL. Failure (NOT_USABLE) for too few pairs.
     std::vector<lensprof_trial_candidate> run(const std::vector<const lensprof_profile *> &profiles,
@@ -39,6 +40,7 @@ public:
 private:
     const Scene &scene_;
     lensprof_profile_key key_{};
+    std::string file_;
     lensprof_trial_options options_{};
     std::vector<lensprof_fit_image> images_;
     std::vector<lensprof_pair> pairs_;

@@ -8,6 +8,7 @@
 #include "photo/base/format.hpp"
 #include "photo/calibration/lens_settings.hpp"
 #include "photo/calibration/scene_trial.hpp"
+#include "photo/cards/card_names.hpp"
 #include "photo/scene/open_scene.hpp"
 
 namespace lensprof {
@@ -127,6 +128,28 @@ std::string nearest_setting(const std::vector<MeasuredSetting> &settings, const 
            + nearest->of.label + " (" + nearest->of.pictures.front().file + "), differs in " + joined(least, " and ");
 }
 
+// What EXIF does not state of a picture, its name may.
+lensprof_profile_key with_names(lensprof_profile_key key, const std::string &file) {
+    const lensprof_profile_key named = setting_of_names(file);
+    for (const auto field :
+         {&lensprof_profile_key::focal_mm, &lensprof_profile_key::aperture, &lensprof_profile_key::distance_m})
+        if (key.*field == LENSPROF_UNKNOWN) key.*field = named.*field;
+    return key;
+}
+
+// Failure if the cards are of several focal lengths or apertures, and the picture states none.
+void require_one_setting(const lensprof_profile_key &key, const std::string &file,
+                         const std::vector<MeasuredSetting> &settings) {
+    for (const auto &[field, what] : {std::pair(&lensprof_profile_key::focal_mm, "focal length"),
+                                      std::pair(&lensprof_profile_key::aperture, "aperture")})
+        for (const MeasuredSetting &setting : settings)
+            if (key.*field == LENSPROF_UNKNOWN && setting.of.key.*field != settings.front().of.key.*field)
+                throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                              file + ": neither EXIF nor its name states the " + what
+                                  + ", and the cards are of several; give pictures that do, such as "
+                                    "Lens_name--35mm--2.8_1.tif");
+}
+
 }  // namespace
 
 std::string LightCheck::text() const {
@@ -145,18 +168,19 @@ LightCheck check_light(const std::vector<std::string> &pictures, bool are_linear
     WarningsAlone warnings(events);
     const Scene scene = open_scene(pictures, {}, warnings);
     const SceneTrial trial(scene, are_linear, events);
+    const lensprof_profile_key key = with_names(trial.key(), trial.file());
     LightCheck check;
     check.pictures = scene.path;
+    require_one_setting(key, trial.file(), settings);
     const auto is_theirs = [&](const MeasuredSetting &setting) {
-        const lensprof_profile_key &a = setting.of.key, &b = trial.key();
+        const lensprof_profile_key &a = setting.of.key, &b = key;
         const bool is_camera = !*a.camera_model || !*b.camera_model || std::strcmp(a.camera_model, b.camera_model) == 0;
         return setting.is_good() && is_camera && is_same_setting(a, b);
     };
     const auto found = std::find_if(settings.begin(), settings.end(), is_theirs);
     if (found == settings.end())
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, check.pictures + ": taken at "
-                                                     + describe_setting(trial.key(), "unknown") + ": "
-                                                     + nearest_setting(settings, trial.key()));
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, check.pictures + ": taken at " + describe_setting(key, "unknown")
+                                                     + ": " + nearest_setting(settings, key));
     check.setting = static_cast<size_t>(found - settings.begin());
     lensprof_trial_result result;
     lensprof_trial_result_init(&result);

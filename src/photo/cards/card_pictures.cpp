@@ -10,6 +10,7 @@
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
 #include "photo/cards/count_samples.hpp"
+#include "photo/cards/saturated_samples.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/scene/scene_pictures.hpp"
@@ -266,6 +267,50 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
                                                     : unknown_black_sigma;
 }
 
+// Failure where many samples lie clearly below the black level: it is too high, and what is darker would pass for what
+// lies outside of an image circle.
+void require_black_below(const CardInput &input) {
+    constexpr double clearly = 0.02, many = 0.01;  // of the mean light; of the samples
+    for (size_t i = 0; i < input.pictures.size(); i++) {
+        const Picture &picture = input.pictures[i];
+        const uint32_t samples = lensprof_layout_samples(picture.layout),
+                       channels = lensprof_layout_channels(picture.layout);
+        const double black = input.options.levels.black[1];
+        double sum = 0.0, below = 0.0, count = 0.0;
+        const auto over = [&](const auto &add) {
+            for (uint32_t y = 0; y < picture.height; y++)
+                for (size_t n = channels / 2; n < size_t{picture.width} * samples; n += samples)
+                    add(sample_value(picture.sample, picture.pixels.data() + y * picture.row_bytes, n) - black);
+        };
+        over([&](double light) { sum += light, count++; });
+        const double limit = -clearly * std::max(sum / count, 0.0);
+        over([&](double light) { below += light < limit; });
+        if (below > many * count)
+            throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                          input.files[i]
+                              + format(": %.0f %% of its samples lie below the black level; state a lower one with %s",
+                                       100.0 * below / count, option_name("black").c_str()));
+    }
+}
+
+// Samples that saturate below white are white.
+void find_saturated(CardInput &input, Events &events) {
+    bool is_noted = false;
+    for (size_t i = 0; i < input.pictures.size() && has_linear_response(input); i++) {
+        const std::optional<double> largest = saturated_sample(input.pictures[i]);
+        if (!largest) continue;
+        constexpr double half_code = 0.5 / 65535.0;
+        const double white = lensprof_levels_to_value(&input.options.levels, 1, *largest - half_code);
+        if (!(white < input.images[i].white)) continue;
+        input.images[i].white = white;
+        if (!is_noted)
+            events.note(input.files[i], format("many of its samples are %.0f of 65535, and none are larger: they are "
+                                               "taken as saturated; state the white level with %s",
+                                               *largest * 65535.0, option_name("white_level").c_str()));
+        is_noted = true;
+    }
+}
+
 }  // namespace
 
 CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pictures, Events &events) {
@@ -340,6 +385,8 @@ void read_cards(const CardOptions &o, CardInput &input, Events &events) {
         image.mask_row_bytes = static_cast<ptrdiff_t>(picture.width);
     }
     take_levels(o, input, events);
+    if (!o.levels.black.empty() || o.dark) require_black_below(input);
+    find_saturated(input, events);
     input.options.response = input.response.data();
     input.options.responses = static_cast<uint32_t>(input.response.size());
 }
