@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The deepest stack of a function, from the compiler's call graph (gcc -fcallgraph-info=su).
 
-usage: stack_depth.py LIMIT FUNCTION INDIRECT FILE.ci...   INDIRECT: called through a pointer ("-": nothing)
+usage: stack_depth.py LIMIT FUNCTION INDIRECT FILE.ci...   INDIRECT: called through a pointer ("-": nothing);
+                                                           CALLER=CALLED,... if several functions do so
        stack_depth.py --self-check
 
 Functions of the C and compiler libraries are not in the graph and count as OUTSIDE bytes. Exit 1 beyond the limit, for
@@ -18,7 +19,8 @@ EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 
 class Graph:
     def __init__(self, texts, indirect):
-        self.frame, self.calls, self.indirect = {}, {}, indirect
+        self.frame, self.calls = {}, {}
+        self.indirect = dict(pair.split("=") if "=" in pair else ("", pair) for pair in indirect.split(","))
         for text in texts:
             for name, label in NODE.findall(text):
                 size = re.search(r"(\d+) bytes \(([^)]*)\)", label)
@@ -32,9 +34,9 @@ class Graph:
     def deepest(self, name, above=()):
         """Stack bytes, and the call path."""
         if name == "__indirect_call":
-            if self.indirect == "-":
-                sys.exit(f"{above[-1]} calls by pointer")
-            name = self.indirect
+            name = self.indirect.get(above[-1], self.indirect.get("", "-"))
+            if name not in self.frame:
+                sys.exit(f"{above[-1]} calls by pointer: {name} is not in the graph")
         if name in above:
             sys.exit(f"{name} calls itself")
         if name not in self.frame:
@@ -49,7 +51,8 @@ def self_check():
     text += 'node: { title: "memcpy" label: "memcpy\\n<built-in>" shape : ellipse }\n'
     text += 'edge: { sourcename: "a" targetname: "__indirect_call" }\nedge: { sourcename: "a" targetname: "memcpy" }\n'
     text += 'edge: { sourcename: "x.c:b" targetname: "memcpy" }\n'
-    good = Graph([text], "x.c:b").deepest("a") == (24 + OUTSIDE, ["a 16", "b 8", f"memcpy ({OUTSIDE} reserved)"])
+    wanted = (24 + OUTSIDE, ["a 16", "b 8", f"memcpy ({OUTSIDE} reserved)"])
+    good = all(Graph([text], pointed).deepest("a") == wanted for pointed in ("x.c:b", "b=c,a=x.c:b"))
     print("stack_depth: found" if good else "stack_depth: not found")
     return 0 if good else 1
 
