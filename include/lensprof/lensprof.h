@@ -21,6 +21,7 @@
 #include "geometry.h"
 #include "hugin.h"
 #include "model.h"
+#include "packed.h"
 #include "profile.h"
 #include "reason.h"
 #include "rendering.h"

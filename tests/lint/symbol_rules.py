@@ -96,8 +96,8 @@ def check_core(nm, archive):
 
 
 # Objects that apply a profile, without the rest of the core. The first set prepares plans and may use a few functions.
-APPLY_PATH = {"apply", "base", "best", "blob", "fixed", "fixed_open", "fixed_plan", "fixed_table", "levels",
-              "gain_grid", "image", "image_circle", "options", "plan", "plan_curves", "profile", "response",
+APPLY_PATH = {"apply", "apply_packed", "base", "best", "blob", "fixed", "fixed_open", "fixed_packed", "fixed_plan",
+              "fixed_table", "levels", "gain_grid", "image", "image_circle", "options", "packed", "plan", "plan_curves", "profile", "response",
               "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "vignetting"}
 # log: newlib implements log2 with it.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",
@@ -106,10 +106,12 @@ OF_COMPILER = re.compile(r"^__(aeabi|gnu)_\w+$|^__(clz|ctz|popcount)[sd]i2$")
 # Functions that an ARM compiler calls for numbers that the processor lacks.
 OF_DOUBLE = re.compile(r"^__aeabi_(c?d[a-z]\w*|\w+2d)$")
 OF_FLOAT = re.compile(r"^__aeabi_(c?[df][a-z]\w*|\w+2[df])$")
-# Pixel code: no functions but these; no double precision in the row kernel, no floating point in fixed.
-PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT}
+# Pixel code: no functions but these; no double precision in the row kernel, no floating point in the others.
+PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT, "packed": OF_FLOAT, "apply_packed": OF_FLOAT, "fixed_packed": OF_FLOAT}
 PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_type_bytes", "lp_tile_validate",
                    "lp_log2_table", "lp_exp2_table"}
+PACKED_MAY_NEED = {"packed": {"lp_images_overlap", "lp_is_mosaic"}, "apply_packed": {"lensprof_apply", "lp_apply_packed"},
+                   "fixed_packed": {"lensprof_fixed_apply", "lp_apply_packed"}}
 
 
 def check_apply(nm, folder):
@@ -125,7 +127,8 @@ def check_apply(nm, folder):
         if not OF_COMPILER.match(name)
     ]
     for pixels, never in PIXELS.items():
-        for name in sorted(nm.needed_and_made([paths[pixels]])[0] - PIXELS_MAY_NEED):
+        allowed = PIXELS_MAY_NEED | PACKED_MAY_NEED.get(pixels, set())
+        for name in sorted(nm.needed_and_made([paths[pixels]])[0] - allowed):
             if never.match(name) or not OF_COMPILER.match(name):
                 violations.append(f"{folder}: pixels in {pixels} call {name}")
     return violations
@@ -266,7 +269,7 @@ def self_check(nm, cc):
              ["applies a profile refers to sqrtf", "row_scalar call sqrtf"]),
         ]:
             (folder / "apply").mkdir(exist_ok=True)
-            for name, text in [("row_scalar", code), ("fixed", "")]:
+            for name, text in [*((name, "") for name in PIXELS), ("row_scalar", code)]:
                 (folder / "apply" / f"{name}.o").write_bytes(compile_c(text + "\nint here;", name).read_bytes())
             expect(f"apply: {code}", check_apply(nm, folder / "apply"), wanted)
         for helper, wanted in [("fadd", 1), ("cfcmple", 1), ("i2f", 1), ("dadd", 1), ("ui2d", 1), ("llsl", 0), ("uidiv", 0)]:

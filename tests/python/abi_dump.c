@@ -593,6 +593,16 @@ static void print_structs(void) {
     FIELD(lensprof_export_options, into);
     FIELD(lensprof_export_options, into_size);
     FIELD(lensprof_export_options, cost_ev);
+    STRUCT(lensprof_packed_image);
+    FIELD(lensprof_packed_image, data);
+    FIELD(lensprof_packed_image, row_bytes);
+    FIELD(lensprof_packed_image, width);
+    FIELD(lensprof_packed_image, height);
+    STRUCT(lensprof_packed_target);
+    FIELD(lensprof_packed_target, data);
+    FIELD(lensprof_packed_target, row_bytes);
+    FIELD(lensprof_packed_target, width);
+    FIELD(lensprof_packed_target, height);
     STRUCT(lensprof_rendering_shot);
     FIELD(lensprof_rendering_shot, struct_size);
     FIELD(lensprof_rendering_shot, width);
@@ -1155,6 +1165,9 @@ static void print_values(void) {
     VALUE(LENSPROF_HOLDS_PROFILES);
     VALUE(LENSPROF_HOLDS_RESPONSE);
     VALUE(LENSPROF_HOLDS_FALLOFF);
+    VALUE(LENSPROF_PACKING_RAW10);
+    VALUE(LENSPROF_PACKING_RAW12);
+    VALUE(LENSPROF_PACKING_RAW14);
     VALUE(LENSPROF_STORE_READ);
     VALUE(LENSPROF_STORE_WRITE);
     VALUE(LENSPROF_STORE_CREATE);

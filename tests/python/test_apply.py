@@ -209,6 +209,47 @@ class Values(unittest.TestCase):
         self.assertEqual(mosaic.shape, (30, 40))
         self.assertGreater(float(mosaic.astype(np.float32).sum()), float(planes[1].astype(np.float32).sum()))
 
+    def test_packed_rows(self):
+        codes = (picture(np.uint16, (30, 40)) >> 6).astype(np.uint16)  # 10 bits
+        packed = lp.pack_rows(codes, lp.Packing.RAW10)
+        groups = codes.reshape(30, 10, 4)
+        low = ((groups & 3) << np.arange(0, 8, 2)).sum(axis=2)  # the first sample in the lowest bits
+        wanted = np.dstack([groups >> 2, low]).astype(np.uint8).reshape(30, 50)
+        np.testing.assert_array_equal(packed, wanted)
+        np.testing.assert_array_equal(lp.unpack_rows(packed, lp.Packing.RAW10, 40), codes)
+        fields = options(source_sample=lp.SampleType.U16, target_sample=lp.SampleType.U16, source_layout=lp.Layout.RGGB,
+                         input=lp.Encoding.LINEAR, output=lp.Encoding.LINEAR)
+        for plan in (lp.Plan(fields), lp.FixedPlan(fields)):
+            whole = plan.apply(codes)
+            self.assertTrue((whole != codes).any())
+            rows = np.zeros((30, 60), dtype=np.uint8)  # some bytes after each row
+            rows[:, :50] = packed
+            upside = plan.apply_packed(rows[2::-1], lp.Packing.RAW10, 40, y0=2)
+            np.testing.assert_array_equal(lp.unpack_rows(upside, lp.Packing.RAW10, 40),
+                                          np.minimum(plan.apply(np.ascontiguousarray(codes[2::-1]), y0=2), 1023))
+            tile = lp.pack_rows(codes[3:9, 5:25], lp.Packing.RAW10)
+            self.assertIs(plan.apply_packed(tile, lp.Packing.RAW10, 20, tile, x0=5, y0=3), tile)
+            np.testing.assert_array_equal(lp.unpack_rows(tile, lp.Packing.RAW10, 20), np.minimum(whole[3:9, 5:25], 1023))
+            plan.apply_packed(rows, lp.Packing.RAW10, 40, rows)
+            np.testing.assert_array_equal(lp.unpack_rows(rows, lp.Packing.RAW10, 40), np.minimum(whole, 1023))
+            self.assertFalse(rows[:, 50:].any())
+            with self.assertRaises(lp.Error):
+                plan.apply_packed(rows, lp.Packing.RAW10, 40, x0=1)
+            for bad in (42, 44, 0):
+                with self.assertRaises(ValueError):
+                    plan.apply_packed(packed, lp.Packing.RAW10, bad)
+            with self.assertRaises(ValueError):
+                plan.apply_packed(read_only(packed), lp.Packing.RAW10, 40, read_only(packed))
+            with self.assertRaises(TypeError):
+                plan.apply_packed(codes, lp.Packing.RAW10, 40)
+        with self.assertRaises(lp.Error):
+            lp.Plan(options()).apply_packed(packed, lp.Packing.RAW10, 40)
+        for bad in (codes.astype(np.uint8), codes.astype(np.float32)):
+            with self.assertRaises(TypeError):
+                lp.pack_rows(bad, lp.Packing.RAW12)
+        with self.assertRaises(ValueError):
+            lp.unpack_rows(packed, 11, 40)
+
     def test_strength_cap_and_dither(self):
         array = np.full((48, 64, 3), 90, np.uint8)
         full, half = lp.correct(array, profile()), lp.correct(array, profile(), strength=0.5)

@@ -113,7 +113,7 @@ static int are_linear(const lensprof_response *responses, uint32_t count, uint32
 }
 
 /* The formula of apply.h for a sample of a channel at a pixel. */
-static double reference(const model *m, double sample, uint32_t c, uint32_t x, uint32_t y) {
+static inline double reference(const model *m, double sample, uint32_t c, uint32_t x, uint32_t y) {
     const lensprof_apply_options *o = &m->options;
     const double value = o->levels ? lensprof_levels_to_value(o->levels, c, sample) : sample;
     const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];

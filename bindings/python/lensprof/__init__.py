@@ -8,7 +8,7 @@ from . import formats
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FIELDS_IMAGES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE,
                    MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction,
                    DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom,
-                   ItemKind, Layout, LinkState, Loss, Method, Pack, Processing, ProfilePrior, Projection, Reason,
+                   ItemKind, Layout, LinkState, Loss, Method, Pack, Packing, Processing, ProfilePrior, Projection, Reason,
                    ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
                    TrialCorners, TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
@@ -27,6 +27,7 @@ from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .folder import calibrate_folder
 from .geometry import Camera
 from .model import Exposure, GainGrid, ImageCircle, Levels, Response, Vignetting, emor_table, half_diagonal
+from .packed import pack_rows, unpack_rows
 from .pictures import Picture, PictureMetadata, encode_picture, read_picture, write_picture
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Finding, Item, reason_name, reason_text
@@ -46,7 +47,7 @@ __all__ = [
     "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
     "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "ImageCircle", "Item",
     "ItemKind", "KNOWN_EXPOSURE_DTYPE", "LINK_DTYPE", "Layout", "Levels", "LinkState", "Lookup", "LookupOptions", "Loss",
-    "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Picture",
+    "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Packing", "Picture",
     "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress", "Projection",
     "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
     "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",
@@ -54,7 +55,7 @@ __all__ = [
     "StoreSummary", "TrialCandidate", "TrialCorners", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
     "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_fields", "fit_flat",
     "fit_overlap", "fit_radiance", "fit_rendering", "formats", "half_diagonal", "known_exposures", "layout_channels",
-    "layout_samples", "lookup_in", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
-    "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "version",
+    "layout_samples", "lookup_in", "pack_rows", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
+    "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "unpack_rows", "version",
     "write_picture",
 ]

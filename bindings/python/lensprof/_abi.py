@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import typing
 from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64, c_size_t,
-                    c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p)
+                    c_ssize_t, c_uint16, c_uint32, c_uint64, c_uint8, c_void_p)
 from enum import IntEnum, IntFlag
 
 if typing.TYPE_CHECKING:
@@ -422,6 +422,13 @@ class Holds(IntEnum):
     PROFILES = 0
     RESPONSE = 1
     FALLOFF = 2
+
+
+class Packing(IntEnum):
+    """lensprof_packing; see lensprof/packed.h."""
+    RAW10 = 10
+    RAW12 = 12
+    RAW14 = 14
 
 
 class StoreMode(IntEnum):
@@ -1309,6 +1316,24 @@ class ExportOptions(Structure):
     ]
 
 
+class PackedImage(Structure):
+    _fields_ = [
+        ("data", c_void_p),
+        ("row_bytes", c_ssize_t),
+        ("width", c_uint32),
+        ("height", c_uint32),
+    ]
+
+
+class PackedTarget(Structure):
+    _fields_ = [
+        ("data", c_void_p),
+        ("row_bytes", c_ssize_t),
+        ("width", c_uint32),
+        ("height", c_uint32),
+    ]
+
+
 class Rendering(Structure):
     """Opaque."""
 
@@ -1750,6 +1775,7 @@ ENUMS = {
     "LENSPROF_DNG_": DngForm,
     "LENSPROF_FORMAT_": Format,
     "LENSPROF_HOLDS_": Holds,
+    "LENSPROF_PACKING_": Packing,
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
@@ -1811,6 +1837,8 @@ STRUCTS = {
     "lensprof_format_info": FormatInfo,
     "lensprof_import_options": ImportOptions,
     "lensprof_export_options": ExportOptions,
+    "lensprof_packed_image": PackedImage,
+    "lensprof_packed_target": PackedTarget,
     "lensprof_rendering_shot": RenderingShot,
     "lensprof_rendering_result": RenderingResult,
     "lensprof_lookup_options": LookupOptions,
@@ -2100,6 +2128,14 @@ FUNCTIONS = {
     "lensprof_export_options_init_sized": (None, [POINTER(ExportOptions), c_size_t]),
     "lensprof_export": (c_int, [POINTER(POINTER(Profile)), c_uint32, POINTER(ExportOptions), c_void_p, c_size_t,
                                 POINTER(c_size_t), POINTER(ErrorText)]),
+    # packed.h
+    "lensprof_packed_row_bytes": (c_size_t, [c_uint32, c_uint32]),
+    "lensprof_unpack_row": (c_int, [c_uint32, POINTER(c_uint8), c_uint32, POINTER(c_uint16)]),
+    "lensprof_pack_row": (c_int, [c_uint32, POINTER(c_uint16), c_uint32, POINTER(c_uint8)]),
+    "lensprof_apply_packed": (c_int, [POINTER(Plan), c_uint32, POINTER(PackedImage), POINTER(PackedTarget), c_uint32,
+                                      c_uint32]),
+    "lensprof_fixed_apply_packed": (c_int, [POINTER(FixedPlan), c_uint32, POINTER(PackedImage), POINTER(PackedTarget),
+                                            c_uint32, c_uint32]),
     # rendering.h
     "lensprof_rendering_create": (c_int, [POINTER(Response), Progress, c_void_p, POINTER(POINTER(Rendering)),
                                           POINTER(ErrorText)]),

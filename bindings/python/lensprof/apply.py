@@ -11,8 +11,8 @@ from typing import Any, Optional, Sequence
 
 import numpy as np
 
-from . import _abi, _arrays
-from ._abi import Direction, Encoding, Layout, SampleType, Saturated
+from . import _abi, _arrays, packed
+from ._abi import Direction, Encoding, Layout, Packing, SampleType, Saturated
 from ._library import check, lib
 from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, default, integer
 from ._types import Pixels
@@ -91,6 +91,20 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
                           _image_circle=pointed("image_circle", shown.image_circle))
 
 
+def _apply_packed(apply: Any, plan: Any, source: Pixels, packing: Packing, width: int, out: Optional[Pixels], x0: int,
+                  y0: int) -> Pixels:
+    """By the function `apply` of the library."""
+    read = packed.view(source, packing, width, "source")
+    if out is None:
+        out = np.zeros((len(source), packed.row_bytes(packing, width)), dtype=np.uint8)
+    target = packed.view(out, packing, width, "out", writable=True)
+    check(apply(plan, packing, byref(_abi.PackedImage.from_buffer_copy(read)), byref(target), integer(x0, "x0"),
+                integer(y0, "y0")),
+          f"packed rows of {len(source)} x {width} samples and out of {len(out)} rows at ({x0}, {y0}): the plan must be of "
+          "uint16 grey or a mosaic, both must have the same height, lie in the frame, and be the same array or apart")
+    return out
+
+
 class Plan:
     """A plan prepared for one picture; may be applied to any of its tiles, by several threads simultaneously."""
 
@@ -117,6 +131,11 @@ class Plan:
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
               "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
         return out
+
+    def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
+                     y0: int = 0) -> Pixels:
+        """The same for packed rows of a sensor (see lensprof.pack_rows); the plan is of uint16, grey or a mosaic."""
+        return _apply_packed(lib.lensprof_apply_packed, self._plan, source, packing, width, out, x0, y0)
 
     def apply_planar(self, source: Sequence[Pixels], out: Optional[Sequence[Pixels]] = None, *, x0: int = 0,
                      y0: int = 0) -> Sequence[Pixels]:
@@ -174,6 +193,11 @@ class FixedPlan:
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
               "the plan's sample type, the same size, lie in the frame, and be the same array or apart")
         return out
+
+    def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
+                     y0: int = 0) -> Pixels:
+        """As Plan.apply_packed."""
+        return _apply_packed(lib.lensprof_fixed_apply_packed, self._plan, source, packing, width, out, x0, y0)
 
 
 def _apply(direction: Direction, array: Pixels, profile: Profile, out: Optional[Pixels],
