@@ -237,6 +237,21 @@ static void the_profile_holds_the_levels(void **) {
     assert_int_equal(lensprof_fit_flat(&o, p.images.data(), 2, nullptr, 0, &flat, nullptr), LENSPROF_ERROR_ARGUMENT);
 }
 
+// Outside of the image circle there is nothing but black: the offset is found with it, and the circle.
+static void black_around_an_image_circle(void **) {
+    for (const double black : {0.02, 0.06}) {
+        FlatPictures p = small_card(black);
+        p.set_falloff(0.0, 0.0, [](double r) { return r < 0.8 ? 1.0 - 0.5 * r * r : 0.0; });
+        p.shoot(0);
+        p.shoot(0, -1.5).ev = -1.5;
+        const auto r = p.fit(open_options(p));
+        assert_true(r->usable && r->black_shown);
+        assert_close(r->black_offset, black, 0.0005);
+        assert_close(r->image_circle.radius, 0.8, 0.01);
+        assert_close(found_falloff(*r, p, 230.0, 100.0), 1.0 - 0.5 * std::pow(radius_at(p, 230.0, 100.0), 2), 0.005);
+    }
+}
+
 int main() {
     const CMUnitTest tests[] = {
         cmocka_unit_test(a_stated_level_is_subtracted),
@@ -251,6 +266,7 @@ int main() {
         cmocka_unit_test(one_level_leaves_the_corner_open),
         cmocka_unit_test(encoded_pictures_have_no_offset),
         cmocka_unit_test(errors_are_as_large_as_stated),
+        cmocka_unit_test(black_around_an_image_circle),
         cmocka_unit_test(the_profile_holds_the_levels),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -22,7 +22,8 @@ constexpr double kConverged = 1e-9;     // of full scale
 constexpr size_t kFullPictures2 = 400;  // square of the pictures of a group from which on some cells suffice
 constexpr double kOutlier2 = 9.0;       // of chi^2 per degree of freedom, from where a cell loses weight
 constexpr double kShown = 0.5;          // of the stated error: above it, the pictures show nothing new
-constexpr double kLargestShare = 0.9;   // of the darkest cell: the rest is light
+constexpr double kBeyondDarkest = 5.0;  // standard errors: outside of an image circle, the darkest cell has no light
+constexpr double kNoLight = 3.0;        // likewise, of a cell that is black
 
 using Groups = std::vector<std::vector<uint32_t>>;
 
@@ -76,7 +77,7 @@ public:
             const Eigen::VectorXd change = solve_symmetric(normal_, gradient_);
             for (size_t i = 1; i < level_.size(); i++) level_[i] += change[static_cast<Eigen::Index>(i)];
             const double before = offset_;
-            offset_ = std::clamp(offset_ + change[0], -0.5, kLargestShare * std::max(darkest_, 0.0));
+            offset_ = std::clamp(offset_ + change[0], -0.5, std::max(darkest_, 0.0));
             if (std::abs(offset_ - before) < kConverged && change.cwiseAbs().maxCoeff() < kStill) break;
         }
         accumulate();
@@ -108,7 +109,7 @@ private:
                             value,
                             1.0 / std::sqrt(variance),
                             {1.0, (one.x - 0.5 * fit.grid.width) / half, (one.y - 0.5 * fit.grid.height) / half}});
-            darkest_ = std::min(darkest_, value);
+            darkest_ = std::min(darkest_, value + kBeyondDarkest * std::sqrt(variance));
         }
         if (seen.size() > 1) cells_.push_back(std::move(seen));
     }
@@ -251,6 +252,9 @@ void subtract(CellPicture &picture, size_t channel, double offset) {
     for (Cell &cell : picture.cells) {
         cell.value[channel] = static_cast<float>(moved(static_cast<double>(cell.value[channel])));
         cell.noise[channel] /= static_cast<float>(span);
+        const double sigma = static_cast<double>(cell.noise[channel]) / std::sqrt(std::max(cell.pixels, 1u));
+        const bool is_dark = static_cast<double>(cell.value[channel]) < kNoLight * sigma;
+        if (cell.state == CellState::used && is_dark) cell.state = CellState::black;
     }
     for (double &grey : picture.noise[channel].grey) grey = moved(grey);
     for (double &variance : picture.noise[channel].variance) variance /= span * span;
