@@ -168,17 +168,18 @@ typedef enum lensprof_pack {
 /* Packs the profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, readable in place by
  * lensprof_plan_init (apply.h). It contains the key without unit, crop factor, colour temperature and style; the
  * responses (samples in single precision), vignettings, levels, image circle and gain grid; and the provenance without
- * source, doubt, prior, forced and gamma_sigma. Size: 132 bytes and the texts for a linear response, 4 kB more per curve of
- * samples. The same profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. data[capacity] and
- * *count (bytes) as in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown flags. */
+ * source, doubt, prior, forced and gamma_sigma. Size: 132 bytes and the texts for a linear response, 4 kB more per
+ * curve of samples. The same profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none.
+ * data[capacity] and *count (bytes) as in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown
+ * flags. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *data, size_t capacity, size_t *count);
 
 /* Unpacks the blob data[size], at any address, into an initialised *profile. Packing it again, with its covariance,
  * gives the same blob. The input is not trusted: CORRUPT if it is not a blob, is damaged in any bit, truncated or too
  * long, or does not contain a valid profile; LAYOUT if a newer lensprof wrote it; STRUCT_SIZE;
- * UNSUPPORTED if it has levels or an image circle and a profile of an older version has no room for them. The profile is written
- * only after the whole blob has passed all checks. */
+ * UNSUPPORTED if it has levels or an image circle and a profile of an older version has no room for them. The profile
+ * is written only after the whole blob has passed all checks. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_unpack(const void *data, size_t size,
                                                                        lensprof_profile *profile);
 

@@ -52,7 +52,7 @@ static int has_part(const lp_blob *blob, enum lp_blob_part part) {
 
 #if LP_HAS_CIRCLE
 static int open_circle(lp_blob *blob, reader *r) {
-    lensprof_image_circle *circle = &blob->model.circle;
+    lensprof_image_circle *circle = &blob->model->circle;
     if (!has_part(blob, LP_BLOB_CIRCLE)) return 1;
     const uint8_t *numbers = take(r, 3 * 8);
     if (!numbers) return 0;
@@ -66,13 +66,13 @@ static int open_circle(lp_blob *blob, reader *r) { return (void)blob, (void)r, 1
 
 #if LP_HAS_LEVELS
 static int open_levels(lp_blob *blob, reader *r) {
-    lensprof_levels *levels = &blob->model.levels[0];
+    lensprof_levels *levels = &blob->model->levels[0];
     if (!has_part(blob, LP_BLOB_LEVELS)) return 1;
     const uint8_t *numbers = take(r, 4 * 8);
     if (!numbers) return 0;
     for (int c = 0; c < 3; c++) levels->black[c] = lp_f64_at(numbers + 8 * c);
     levels->white = lp_f64_at(numbers + 24);
-    blob->model.levels[1] = *levels; /* black is put back */
+    blob->model->levels[1] = *levels; /* black is put back */
     return lp_has_levels(levels) && lensprof_levels_validate(levels) == LENSPROF_OK;
 }
 #else
@@ -80,7 +80,7 @@ static int open_levels(lp_blob *blob, reader *r) { return (void)blob, (void)r, 1
 #endif
 
 static int open_falloff(lp_blob *blob, reader *r) {
-    lp_model *m = &blob->model;
+    lp_model *m = blob->model;
     m->vignettings = blob->bytes[LP_BLOB_VIGNETTINGS];
     if (m->vignettings != 1 && m->vignettings != 3) return 0;
     for (uint32_t c = 0; c < m->vignettings; c++) {
@@ -105,7 +105,7 @@ static int is_curve(const struct lp_model_response *response) {
 }
 
 static int open_response(lp_blob *blob, uint32_t c, reader *r) {
-    struct lp_model_response *response = &blob->model.response[c];
+    struct lp_model_response *response = &blob->model->response[c];
     const uint8_t *head = take(r, 4);
     if (!head || head[2] || head[3]) return 0;
     const uint32_t kind = head[0], modes = head[1];
@@ -129,14 +129,14 @@ static int open_response(lp_blob *blob, uint32_t c, reader *r) {
 static int open_responses(lp_blob *blob, reader *r) {
     const uint32_t responses = blob->bytes[LP_BLOB_RESPONSES];
     if (responses != 1 && responses != 3) return 0;
-    blob->model.responses = responses;
+    blob->model->responses = responses;
     for (uint32_t c = 0; c < responses; c++)
         if (!open_response(blob, c, r)) return 0;
     return 1;
 }
 
 static int open_grid(lp_blob *blob, reader *r) {
-    lp_model *m = &blob->model;
+    lp_model *m = blob->model;
     const uint8_t *grid = blob->bytes + LP_BLOB_GRID;
     m->channels = grid[0], m->columns = grid[1], m->rows = grid[2];
     if (!m->channels && !m->columns && !m->rows) return 1;
@@ -246,13 +246,14 @@ static int is_zero(const uint8_t *bytes, uint32_t count) {
     return 1;
 }
 
-lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob) {
+lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob, lp_model *model) {
     const uint8_t *b = bytes;
     const lensprof_status status = check_frame(b, count);
     if (status != LENSPROF_OK) return status;
     if (count < LP_BLOB_FIXED + CRC_BYTES) return LENSPROF_ERROR_CORRUPT;
-    memset(blob, 0, sizeof *blob);
+    memset(model, 0, sizeof *model);
     blob->bytes = b;
+    blob->model = model;
     reader r = {b + LP_BLOB_FIXED, count - LP_BLOB_FIXED - CRC_BYTES};
     const int is_blob = is_zero(b + LP_BLOB_COVARIANCE + 1, 1) && is_zero(b + LP_BLOB_TEXTS + 5, 3)
                         && open_falloff(blob, &r) && open_circle(blob, &r) && open_levels(blob, &r)

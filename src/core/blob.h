@@ -96,14 +96,14 @@ typedef struct lp_blob {
     const uint8_t *response[3]; /* kind, modes, 0, 0; then a gamma, or coefficients and samples */
     const uint8_t *covariance;  /* upper triangle, row by row, f64 */
     const uint8_t *text;        /* maker, model, lens, method, software, without gaps */
-    lp_model model;
+    lp_model *model;            /* what a plan needs of it, of whoever opens it */
 } lp_blob;
 
 /* CRC-32 of IEEE 802.3: reflected, polynomial 0xEDB88320. */
 uint32_t lp_crc32(const uint8_t *bytes, size_t count);
 
-/* Finds the parts and checks everything in them, as lensprof_profile_unpack states. */
-lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob);
+/* Finds the parts and checks everything in them, as lensprof_profile_unpack states; fills both structs. */
+lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob, lp_model *model);
 
 /* Key and provenance of an open blob; 0 if a text does not fit. */
 int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key);

@@ -142,7 +142,7 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
 
 /* All numbers have been checked. */
 static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r) {
-    const struct lp_model_response *from = &blob->model.response[c];
+    const struct lp_model_response *from = &blob->model->response[c];
     lensprof_response_set_linear(r);
     if (from->kind == LENSPROF_RESPONSE_GAMMA && lensprof_response_set_gamma(r, from->gamma) == LENSPROF_OK) return;
     r->kind = from->kind;
@@ -161,11 +161,12 @@ static void copy_covariance(const lp_blob *blob, lensprof_profile *profile) {
 
 lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_profile *profile) {
     lp_blob b;
+    lp_model model;
     if (!data || !profile) return LENSPROF_ERROR_ARGUMENT;
     if (lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile)) return LENSPROF_ERROR_STRUCT_SIZE;
-    const lensprof_status status = lp_blob_open(data, size, &b);
+    const lensprof_status status = lp_blob_open(data, size, &b, &model);
     if (status != LENSPROF_OK) return status;
-    const lp_model *m = &b.model;
+    const lp_model *m = &model;
 #if LP_HAS_LEVELS
     if (lp_has_levels(&m->levels[0]) && profile->struct_size < LP_END_OF(lensprof_profile, levels))
         return LENSPROF_ERROR_UNSUPPORTED;

@@ -82,9 +82,7 @@ static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m) 
     if (!o->blob) return view_structs(o, m);
     if (o->response || o->vignetting || o->grid || o->image_circle) return LENSPROF_ERROR_ARGUMENT;
     lp_blob blob;
-    const lensprof_status status = lp_blob_open(o->blob, o->blob_bytes, &blob);
-    if (status == LENSPROF_OK) *m = blob.model;
-    return status;
+    return lp_blob_open(o->blob, o->blob_bytes, &blob, m);
 }
 
 lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {

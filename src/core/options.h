@@ -36,8 +36,7 @@ const struct lp_model_response *lp_response(const lensprof_apply_options *option
 const lensprof_levels *lp_levels_of(const lp_model *model, enum lp_end end);
 
 static inline int lp_model_has_levels(const lp_model *m) {
-    return LP_HAS_LEVELS
-           && (lp_has_levels(lp_levels_of(m, LP_INPUT)) || lp_has_levels(lp_levels_of(m, LP_OUTPUT)));
+    return LP_HAS_LEVELS && (lp_has_levels(lp_levels_of(m, LP_INPUT)) || lp_has_levels(lp_levels_of(m, LP_OUTPUT)));
 }
 
 /* Whether a response is a power of light (including the first power) rather than a table. */

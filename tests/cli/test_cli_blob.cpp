@@ -171,8 +171,8 @@ void test_show_refuses(void **) {
     longer.push_back(0);
     refuse(longer, "export");
     refuse(load(work("p.db")), "export");
-    Bytes newer = good;  // layout 3, sealed bit by bit
-    newer[4] = 3;
+    Bytes newer = good;  // layout 5, sealed bit by bit
+    newer[4] = 5;
     uint32_t crc = 0xFFFFFFFF;
     for (size_t i = 0; i + 4 < newer.size(); i++) {
         crc ^= newer[i];

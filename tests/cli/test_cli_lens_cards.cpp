@@ -370,7 +370,8 @@ void test_light_is_checked_with_the_setting_of_names(void **) {
     card.aperture = 5.6, card.k1 = -0.2;
     shoot("two/b.tif", card);
     const Words words = flat_of({in_folder("two")}, {"--black", "0"});
-    assert_refused(not_usable, words + Words{"--check", in_folder("unnamed")}, {"img00", "states the aperture", "35mm--2.8"});
+    assert_refused(not_usable, words + Words{"--check", in_folder("unnamed")},
+                   {"img00", "states the aperture", "35mm--2.8"});
     const Json json = json_of(words + Words{"--json", "--check", in_folder("named")});
     assert_true(contains(json["light"]["setting"].get<std::string>(), "5.6"));
     assert_int_equal(json["light"]["removed_from"], 0);

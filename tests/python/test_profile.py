@@ -231,7 +231,7 @@ class Blobs(unittest.TestCase):
         for data in wrong:
             with refused(self, lp.Status.ERROR_CORRUPT):
                 lp.Profile.unpack(data)
-        newer = blob[:4] + b"\3" + blob[5:-4]
+        newer = blob[:4] + b"\5" + blob[5:-4]
         with refused(self, lp.Status.ERROR_LAYOUT):
             lp.Profile.unpack(newer + struct.pack("<I", zlib.crc32(newer)))
         for data in ("text", 5, None):
