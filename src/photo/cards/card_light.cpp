@@ -17,6 +17,7 @@ namespace {
 using Row3 = std::array<double, 3>;
 
 constexpr double light_sigma_ev = 0.5;  // of each coefficient of the light, before it is measured
+constexpr double missed_share = 0.08;   // of a known light, which simulated pictures show by 92 to 94 %
 constexpr int radii = 64;
 constexpr double least_scale = 0.98;  // of focal lengths: that of the check, within the rounding of EXIF
 
@@ -212,6 +213,8 @@ RadialLight light_of(const LightCheck &check) {
     light.covariance[0][0] = a[1][1] / determinant, light.covariance[1][1] = a[0][0] / determinant;
     light.covariance[0][1] = light.covariance[1][0] = -a[0][1] / determinant;
     for (int i = 0; i < 2; i++) light.c[i] = light.covariance[i][0] * b[0] + light.covariance[i][1] * b[1];
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++) light.covariance[i][k] += missed_share * missed_share * light.c[i] * light.c[k];
     return light;
 }
 
