@@ -267,24 +267,35 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
                                                     : unknown_black_sigma;
 }
 
-// Failure where many samples lie clearly below the black level: it is too high, and what is darker would pass for what
-// lies outside of an image circle.
+uint32_t green_of(uint32_t layout) { return lensprof_layout_channels(layout) == 3 ? 1 : 0; }
+
+// Failure where a part of a picture lies clearly below the black level: it is too high, and what is darker would pass
+// for what lies outside of an image circle. Means along rows are compared, and by four standard errors, since noise
+// falls below black.
 void require_black_below(const CardInput &input) {
-    constexpr double clearly = 0.02, many = 0.01;  // of the mean light; of the samples
+    constexpr double clearly = 0.1, many = 0.02, noise_sigmas = 4.0;  // of the mean light; of the means
     for (size_t i = 0; i < input.pictures.size(); i++) {
         const Picture &picture = input.pictures[i];
-        const uint32_t samples = lensprof_layout_samples(picture.layout),
-                       channels = lensprof_layout_channels(picture.layout);
-        const double black = input.options.levels.black[1];
-        double sum = 0.0, below = 0.0, count = 0.0;
-        const auto over = [&](const auto &add) {
-            for (uint32_t y = 0; y < picture.height; y++)
-                for (size_t n = channels / 2; n < size_t{picture.width} * samples; n += samples)
-                    add(sample_value(picture.sample, picture.pixels.data() + y * picture.row_bytes, n) - black);
-        };
-        over([&](double light) { sum += light, count++; });
-        const double limit = -clearly * std::max(sum / count, 0.0);
-        over([&](double light) { below += light < limit; });
+        const uint32_t samples = lensprof_layout_samples(picture.layout), green = green_of(picture.layout);
+        const size_t run = std::clamp<size_t>(picture.width / 8, 1, 128);  // samples of a mean
+        std::vector<double> means;
+        double all = 0.0, squares = 0.0;  // of differences of neighbours
+        for (uint32_t y = 0; y < picture.height; y++)
+            for (size_t first = 0; first + run <= picture.width; first += run) {
+                const uint8_t *row = picture.pixels.data() + y * picture.row_bytes;
+                double sum = 0.0, before = sample_value(picture.sample, row, first * samples + green);
+                for (size_t x = first; x < first + run; x++) {
+                    const double sample = sample_value(picture.sample, row, x * samples + green);
+                    sum += sample, squares += (sample - before) * (sample - before), before = sample;
+                }
+                means.push_back(sum / static_cast<double>(run) - input.options.levels.black[1]);
+                all += means.back();
+            }
+        const double count = static_cast<double>(means.size()), of_run = static_cast<double>(run);
+        const double sigma = std::sqrt(0.5 * squares / count) / of_run;
+        const double limit = -clearly * std::max(all / count, 0.0) - noise_sigmas * sigma;
+        const auto below =
+            static_cast<double>(std::count_if(means.begin(), means.end(), [&](double mean) { return mean < limit; }));
         if (below > many * count)
             throw Failure(LENSPROF_ERROR_NOT_USABLE,
                           input.files[i]
