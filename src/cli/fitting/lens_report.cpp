@@ -350,9 +350,8 @@ void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &out
 }
 
 ExitCode lens_exit_code(const LensCards &cards) {
-    bool are_good = cards.good() == cards.settings.size() && cards.lens_file_obstacle.empty();
-    for (size_t n = 0; n < cards.settings.size(); n++) are_good = are_good && cards.is_good_for_lensfun(n);
-    if (!are_good) return ExitCode::not_usable;
+    const bool are_good = settings_for_file(cards).numbers.size() == cards.settings.size();
+    if (!are_good || !cards.lens_file_obstacle.empty()) return ExitCode::not_usable;
     return cards.left_out.empty() ? ExitCode::done : ExitCode::unreadable;
 }
 

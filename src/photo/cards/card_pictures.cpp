@@ -267,8 +267,6 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
                                                     : unknown_black_sigma;
 }
 
-uint32_t green_of(uint32_t layout) { return lensprof_layout_channels(layout) == 3 ? 1 : 0; }
-
 // Failure where a part of a picture lies clearly below the black level: it is too high, and what is darker would pass
 // for what lies outside of an image circle. Means along rows are compared, and by four standard errors, since noise
 // falls below black.
@@ -276,7 +274,8 @@ void require_black_below(const CardInput &input) {
     constexpr double clearly = 0.1, many = 0.02, noise_sigmas = 4.0;  // of the mean light; of the means
     for (size_t i = 0; i < input.pictures.size(); i++) {
         const Picture &picture = input.pictures[i];
-        const uint32_t samples = lensprof_layout_samples(picture.layout), green = green_of(picture.layout);
+        const uint32_t samples = lensprof_layout_samples(picture.layout),
+                       green = lensprof_layout_channels(picture.layout) / 2;
         const size_t run = std::clamp<size_t>(picture.width / 8, 1, 128);  // samples of a mean
         std::vector<double> means;
         double all = 0.0, squares = 0.0;  // of differences of neighbours
