@@ -26,6 +26,7 @@
 #include "reason.h"
 #include "rendering.h"
 #include "sample.h"
+#include "sensor.h"
 #include "store.h"
 #include "trial.h"
 

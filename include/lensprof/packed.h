@@ -1,4 +1,4 @@
-/* lensprof/packed.h - rows of a raw sensor as MIPI CSI-2 sends them: 10, 12 or 14 bits per sample, packed.
+/* lensprof/packed.h - rows of a raw sensor as MIPI CSI-2 sends them: 8, 10, 12 or 14 bits per sample, packed.
  *
  * Example: a frame of a sensor with 10 bits, corrected in place.
  *
@@ -42,6 +42,7 @@ extern "C" {
 
 /* Bits per sample. */
 typedef enum lensprof_packing {
+    LENSPROF_PACKING_RAW8 = 8,   /* a byte per sample */
     LENSPROF_PACKING_RAW10 = 10, /* groups of 4 samples in 5 bytes */
     LENSPROF_PACKING_RAW12 = 12, /* 2 in 3 */
     LENSPROF_PACKING_RAW14 = 14  /* 4 in 7 */

@@ -7,9 +7,8 @@
 
 /* Samples of a group, which takes group_of(packing) * packing / 8 bytes; 0 if the packing is unknown. */
 static uint32_t group_of(uint32_t packing) {
-    return packing == LENSPROF_PACKING_RAW12                                        ? 2
-           : packing == LENSPROF_PACKING_RAW10 || packing == LENSPROF_PACKING_RAW14 ? 4
-                                                                                    : 0;
+    if (packing == LENSPROF_PACKING_RAW10 || packing == LENSPROF_PACKING_RAW14) return 4;
+    return packing == LENSPROF_PACKING_RAW8 ? 1 : packing == LENSPROF_PACKING_RAW12 ? 2 : 0;
 }
 
 /* The high bytes of a group, then its low bits, 24 at most, as one little-endian number. */

@@ -53,7 +53,7 @@ CPP_OUTSIDE = {
     "thread",
 }
 
-CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "packed.h", "profile.h", "reason.h"}
+CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "packed.h", "profile.h", "reason.h", "sensor.h"}
 FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
@@ -121,6 +121,7 @@ PUBLIC = {
     "packed.h": CORE_API,
     "profile.h": CORE_API,
     "reason.h": CORE_API,
+    "sensor.h": CORE_API,
     "sample.h": FIT_API,
     "exposure_settings.h": CORE_API,
     "fit.h": FIT_API,

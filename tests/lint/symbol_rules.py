@@ -98,7 +98,8 @@ def check_core(nm, archive):
 # Objects that apply a profile, without the rest of the core. The first set prepares plans and may use a few functions.
 APPLY_PATH = {"apply", "apply_packed", "base", "best", "blob", "fixed", "fixed_open", "fixed_packed", "fixed_plan",
               "fixed_table", "levels", "gain_grid", "image", "image_circle", "options", "packed", "plan", "plan_curves", "profile", "response",
-              "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "vignetting"}
+              "readout", "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "sensor", "sensor_error", "sensor_flat",
+              "sensor_flat_fit", "sensor_open", "sensor_packed", "sensor_plan", "vignetting"}
 # log: newlib implements log2 with it.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",
                   "memcmp", "memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
@@ -107,11 +108,13 @@ OF_COMPILER = re.compile(r"^__(aeabi|gnu)_\w+$|^__(clz|ctz|popcount)[sd]i2$")
 OF_DOUBLE = re.compile(r"^__aeabi_(c?d[a-z]\w*|\w+2d)$")
 OF_FLOAT = re.compile(r"^__aeabi_(c?[df][a-z]\w*|\w+2[df])$")
 # Pixel code: no functions but these; no double precision in the row kernel, no floating point in the others.
-PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT, "packed": OF_FLOAT, "apply_packed": OF_FLOAT, "fixed_packed": OF_FLOAT}
+PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT, "packed": OF_FLOAT, "apply_packed": OF_FLOAT, "fixed_packed": OF_FLOAT,
+          "sensor": OF_FLOAT, "sensor_packed": OF_FLOAT}
 PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_type_bytes", "lp_tile_validate",
                    "lp_log2_table", "lp_exp2_table"}
 PACKED_MAY_NEED = {"packed": {"lp_images_overlap", "lp_is_mosaic"}, "apply_packed": {"lensprof_apply", "lp_apply_packed"},
-                   "fixed_packed": {"lensprof_fixed_apply", "lp_apply_packed"}}
+                   "fixed_packed": {"lensprof_fixed_apply", "lp_apply_packed"},
+                   "sensor_packed": {"lensprof_sensor_apply", "lp_apply_packed"}}
 
 
 def check_apply(nm, folder):

@@ -18,7 +18,8 @@ enum {
 static const struct {
     uint32_t packing, samples, bytes;
     const char *low[3];
-} packings[] = {{LENSPROF_PACKING_RAW10, 4, 5, {"d1d0c1c0b1b0a1a0"}},
+} packings[] = {{LENSPROF_PACKING_RAW8, 1, 1, {NULL}},
+                {LENSPROF_PACKING_RAW10, 4, 5, {"d1d0c1c0b1b0a1a0"}},
                 {LENSPROF_PACKING_RAW12, 2, 3, {"b3b2b1b0a3a2a1a0"}},
                 {LENSPROF_PACKING_RAW14, 4, 7, {"b1b0a5a4a3a2a1a0", "c3c2c1c0b5b4b3b2", "d5d4d3d2d1d0c5c4"}}};
 #define PACKINGS (sizeof packings / sizeof *packings)
@@ -86,7 +87,7 @@ static void test_rows_that_are_refused(void **state) {
         uint32_t packing, width;
         lensprof_status status;
     } bad[] = {{0, 4, LENSPROF_ERROR_ARGUMENT},
-               {8, 4, LENSPROF_ERROR_ARGUMENT},
+               {7, 4, LENSPROF_ERROR_ARGUMENT},
                {11, 4, LENSPROF_ERROR_ARGUMENT},
                {16, 4, LENSPROF_ERROR_ARGUMENT},
                {UINT32_MAX, 4, LENSPROF_ERROR_ARGUMENT},

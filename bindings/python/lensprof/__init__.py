@@ -7,7 +7,7 @@ stride) raise TypeError or ValueError. Files of other programs are in lensprof.f
 from . import formats
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FIELDS_IMAGES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE,
                    MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction,
-                   DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom,
+                   DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Flip, Free, GammaFrom,
                    ItemKind, Layout, LinkState, Loss, Method, Pack, Packing, Processing, ProfilePrior, Projection, Reason,
                    ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
                    TrialCorners, TrialResponse)
@@ -34,6 +34,7 @@ from .reason import Finding, Item, reason_name, reason_text
 from .rendering import RenderingResult, RenderingShot, fit_rendering
 from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, sample_tracks
 from .scene import Scene, SceneImage, calibrate
+from .sensor import Readout, SensorFlat, SensorLevels, SensorPlan, mired_share
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary, lookup_in
 from .trial import TrialCandidate, TrialResult, try_profiles
 
@@ -45,17 +46,17 @@ __all__ = [
     "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FieldsChannel", "FieldsOptions",
     "FieldsResult", "Finding", "FitCamera", "FitImage",
     "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
-    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "ImageCircle", "Item",
+    "FlatOptions", "FlatResult", "Flip", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "ImageCircle", "Item",
     "ItemKind", "KNOWN_EXPOSURE_DTYPE", "LINK_DTYPE", "Layout", "Levels", "LinkState", "Lookup", "LookupOptions", "Loss",
     "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Packing", "Picture",
     "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress", "Projection",
-    "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
+    "Provenance", "RESPONSE_SAMPLES", "Readout", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
     "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",
-    "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames", "StoreRow", "StoreStats",
+    "SceneImage", "SensorFlat", "SensorLevels", "SensorPlan", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames", "StoreRow", "StoreStats",
     "StoreSummary", "TrialCandidate", "TrialCorners", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
     "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_fields", "fit_flat",
     "fit_overlap", "fit_radiance", "fit_rendering", "formats", "half_diagonal", "known_exposures", "layout_channels",
-    "layout_samples", "lookup_in", "pack_rows", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
+    "layout_samples", "lookup_in", "mired_share", "pack_rows", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
     "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "unpack_rows", "version",
     "write_picture",
 ]

@@ -37,6 +37,8 @@ FLAT_SPOTS = 32
 RENDERING_SHOTS = 16
 RENDERING_SIDE = 256
 RENDERING_RAW_SIDE = 64
+SENSOR_PLANES = 4
+SENSOR_GRID_SIDE = 33
 LOOKUP_ROWS = 24
 LOOKUP_REASONS = 8
 LOOKUP_RESPONSES = 8
@@ -426,9 +428,18 @@ class Holds(IntEnum):
 
 class Packing(IntEnum):
     """lensprof_packing; see lensprof/packed.h."""
+    RAW8 = 8
     RAW10 = 10
     RAW12 = 12
     RAW14 = 14
+
+
+class Flip(IntEnum):
+    """lensprof_flip; see lensprof/sensor.h."""
+    NONE = 0
+    HORIZONTAL = 1
+    VERTICAL = 2
+    BOTH = 3
 
 
 class StoreMode(IntEnum):
@@ -1395,6 +1406,41 @@ class RenderingResult(Structure):
     ]
 
 
+class SensorLevels(Structure):
+    _fields_ = [
+        ("black", c_double * 4),
+        ("white", c_double),
+    ]
+
+
+class Readout(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("x", c_uint32),
+        ("y", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("step", c_uint32),
+        ("flip", c_uint32),
+        ("side", c_uint32),
+        ("plane", c_uint8 * 16),
+        ("channel", c_uint8 * 4),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("gains", POINTER(c_float)),
+        ("levels", POINTER(SensorLevels)),
+        ("output_levels", POINTER(SensorLevels)),
+    ]
+
+
+class SensorPlan(Structure):
+    """Opaque."""
+
+
+class SensorFlat(Structure):
+    """Opaque."""
+
+
 class Store(Structure):
     """Opaque."""
 
@@ -1776,6 +1822,7 @@ ENUMS = {
     "LENSPROF_FORMAT_": Format,
     "LENSPROF_HOLDS_": Holds,
     "LENSPROF_PACKING_": Packing,
+    "LENSPROF_FLIP_": Flip,
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
@@ -1841,6 +1888,8 @@ STRUCTS = {
     "lensprof_packed_target": PackedTarget,
     "lensprof_rendering_shot": RenderingShot,
     "lensprof_rendering_result": RenderingResult,
+    "lensprof_sensor_levels": SensorLevels,
+    "lensprof_readout": Readout,
     "lensprof_lookup_options": LookupOptions,
     "lensprof_lookup": Lookup,
     "lensprof_store_row": StoreRow,
@@ -1876,6 +1925,8 @@ OPAQUE = {
     "lensprof_flat": Flat,
     "lensprof_pto": Pto,
     "lensprof_rendering": Rendering,
+    "lensprof_sensor_plan": SensorPlan,
+    "lensprof_sensor_flat": SensorFlat,
     "lensprof_store": Store,
     "lensprof_picture": Picture,
     "lensprof_scene": Scene,
@@ -1922,6 +1973,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
     RenderingShot: ("lensprof_init_sized", [RenderingShot]),
     RenderingResult: ("lensprof_init_sized", [RenderingResult]),
+    Readout: ("lensprof_readout_init_sized", [Readout]),
     LookupOptions: ("lensprof_init_sized", [LookupOptions]),
     Lookup: ("lensprof_init_sized", [Lookup]),
     StoreStats: ("lensprof_init_sized", [StoreStats]),
@@ -2144,6 +2196,29 @@ FUNCTIONS = {
     "lensprof_rendering_fit": (c_int, [POINTER(Rendering), POINTER(RenderingResult), POINTER(ErrorText)]),
     "lensprof_rendering_shot_at": (c_int, [POINTER(Rendering), c_uint32, POINTER(RenderingShot), POINTER(ErrorText)]),
     "lensprof_rendering_finding_at": (c_int, [POINTER(Rendering), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
+    # sensor.h
+    "lensprof_readout_init_sized": (None, [POINTER(Readout), c_size_t]),
+    "lensprof_readout_set_mosaic": (c_int, [POINTER(Readout), c_char_p]),
+    "lensprof_sensor_plan_bytes": (c_size_t, [POINTER(Readout)]),
+    "lensprof_sensor_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(Readout),
+                                          POINTER(POINTER(SensorPlan)), POINTER(ErrorText)]),
+    "lensprof_sensor_plan_error": (c_int, [POINTER(SensorPlan), POINTER(ApplyOptions), POINTER(Readout),
+                                           POINTER(c_double)]),
+    "lensprof_sensor_plan_open": (c_int, [c_void_p, c_size_t, POINTER(POINTER(SensorPlan))]),
+    "lensprof_sensor_plan_mix": (c_int, [c_void_p, c_size_t, POINTER(SensorPlan), POINTER(SensorPlan), c_uint32,
+                                         POINTER(POINTER(SensorPlan))]),
+    "lensprof_mired_share": (c_uint32, [c_uint32, c_uint32, c_uint32]),
+    "lensprof_sensor_apply": (c_int, [POINTER(SensorPlan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
+    "lensprof_sensor_apply_packed": (c_int, [POINTER(SensorPlan), c_uint32, POINTER(PackedImage), POINTER(PackedTarget),
+                                             c_uint32, c_uint32]),
+    "lensprof_sensor_flat_bytes": (c_size_t, [POINTER(Readout)]),
+    "lensprof_sensor_flat_init": (c_int, [c_void_p, c_size_t, c_uint32, c_uint32, POINTER(Readout),
+                                          POINTER(POINTER(SensorFlat)), POINTER(ErrorText)]),
+    "lensprof_sensor_flat_add": (c_int, [POINTER(SensorFlat), POINTER(Image), c_uint32, c_uint32]),
+    "lensprof_sensor_flat_open": (c_int, [c_void_p, c_size_t, POINTER(POINTER(SensorFlat))]),
+    "lensprof_sensor_flat_work_bytes": (c_size_t, [POINTER(SensorFlat)]),
+    "lensprof_sensor_flat_gains": (c_int, [POINTER(SensorFlat), c_void_p, c_size_t, POINTER(c_float),
+                                           POINTER(ErrorText)]),
     # store.h
     "lensprof_store_open": (c_int, [c_char_p, c_uint32, POINTER(POINTER(Store)), POINTER(ErrorText)]),
     "lensprof_store_close": (None, [POINTER(Store)]),

@@ -1,0 +1,174 @@
+/* Sensor plans, rounded from double precision (lensprof/sensor.h). */
+#include <math.h>
+#include <string.h>
+
+#include "core/fail.h"
+#include "core/gain_grid.h"
+#include "core/options.h"
+#include "core/sensor_plan.h"
+
+/* ---- the model ---- */
+
+static int is_linear(const lensprof_apply_options *o, const lp_model *m) {
+    int linear = 1;
+    for (uint32_t c = 0; c < m->responses; c++) linear = linear && m->response[c].kind == LENSPROF_RESPONSE_LINEAR;
+    const int is_output_linear = linear && !m->outputs;
+    return (linear || o->input == LENSPROF_ENCODING_LINEAR)
+           && (is_output_linear || o->output == LENSPROF_ENCODING_LINEAR);
+}
+
+/* M of a channel, with the gain grid. */
+static double attenuation_at(const lensprof_apply_options *o, const lp_model *m, uint32_t channel, double x, double y) {
+    const lensprof_vignetting *v = &m->vignetting[m->vignettings == 3 ? channel : 0];
+    const double r2 = lensprof_vignetting_r2(v, o->frame_width, o->frame_height, x, y, NULL);
+    const double falloff = lensprof_vignetting_eval(v, r2, NULL);
+    if (!m->columns) return falloff;
+    const lp_grid_cell column = lp_grid_cell_at(x, o->frame_width, m->columns);
+    const lp_grid_cell row = lp_grid_cell_at(y, o->frame_height, m->rows);
+    const uint32_t plane = m->channels == 3 ? channel : 0;
+    const uint32_t first = (plane * m->rows + row.node) * m->columns + column.node;
+    const float node[4] = {lp_model_node(m, first), lp_model_node(m, first + 1), lp_model_node(m, first + m->columns),
+                           lp_model_node(m, first + m->columns + 1)};
+    return falloff * lp_grid_value(node, 2, (lp_grid_cell){0, column.fraction}, (lp_grid_cell){0, row.fraction});
+}
+
+/* Of the options: with chroma, strength and gain cap (apply.h). */
+static double corrected_attenuation(const lensprof_apply_options *o, const lp_model *m, uint32_t channel, double x,
+                                    double y) {
+    static const double luminance[3] = {0.2126, 0.7152, 0.0722};
+    const int have_colour = m->vignettings == 3 || m->channels == 3;
+    double of = attenuation_at(o, m, channel, x, y);
+    if (o->chroma) {
+        double y_of = 0.0;
+        for (uint32_t c = 0; c < 3; c++) y_of += luminance[c] * attenuation_at(o, m, c, x, y);
+        of = have_colour ? of / y_of : 1.0;
+    }
+    return fmax(1.0 + o->strength * (of - 1.0), 1.0 / (o->gain_cap > 0.0 ? o->gain_cap : LP_LARGEST_GAIN_CAP));
+}
+
+double lp_sensor_gain(const lp_sensor_source *s, uint32_t plane, double x, double y) {
+    const uint32_t channel = s->readout.channel[plane];
+    const double gain =
+        lp_exposure_ratio(&s->options, channel) / corrected_attenuation(&s->options, &s->model, channel, x, y);
+    return s->options.direction == LENSPROF_DIRECTION_SIMULATE ? 1.0 / gain : gain;
+}
+
+/* ---- validation ---- */
+
+static lensprof_status take_levels(lp_sensor_source *s) {
+    const lensprof_sensor_levels *given[2] = {s->readout.levels, s->readout.output_levels};
+    if (!given[1] && given[0]) given[1] = given[0];
+    for (int end = LP_INPUT; end <= LP_OUTPUT; end++) {
+        lensprof_sensor_levels *levels = &s->levels[end];
+        const lensprof_levels *of_model = lp_levels_of(&s->model, end);
+        levels->white = 65535.0 * lp_white_level(of_model);
+        for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++)
+            levels->black[p] = 65535.0 * of_model->black[s->readout.channel[p]];
+        if (given[end]) *levels = *given[end];
+        if (lp_sensor_levels_validate(levels) != LENSPROF_OK) return LENSPROF_ERROR_ARGUMENT;
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status lp_sensor_source_take(lp_sensor_source *s, const lensprof_apply_options *options,
+                                      const lensprof_readout *readout, lensprof_error *error) {
+    lensprof_status status = lp_options_validate(options, &s->options, &s->model, error);
+    if (status != LENSPROF_OK) return status;
+    status = lp_readout_take(&s->readout, readout, s->options.frame_width, s->options.frame_height, error);
+    if (status != LENSPROF_OK) return status;
+    if (!is_linear(&s->options, &s->model))
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "sensor samples are linear: LINEAR input and output");
+    if ((LP_HAS_CIRCLE && s->model.circle.radius > 0.0) || s->options.dither)
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "grids of gains take no image circle or dither");
+    if (take_levels(s) != LENSPROF_OK)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "levels: black is not below white, or white over 65535");
+    return LENSPROF_OK;
+}
+
+/* ---- plans ---- */
+
+/* The gain at a node, from light to light, of the nodes as the plan counts them. */
+static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row) {
+    const lensprof_readout *r = &s->readout;
+    if (lp_readout_is_flipped(r, 0)) column = r->columns - 1 - column;
+    if (lp_readout_is_flipped(r, 1)) row = r->rows - 1 - row;
+    const double x = (s->options.frame_width - 1.0) * column / (r->columns - 1.0);
+    const double y = (s->options.frame_height - 1.0) * row / (r->rows - 1.0);
+    const double gain = lp_sensor_gain(s, plane, x, y);
+    return r->gains ? gain * (double)r->gains[(plane * r->rows + row) * r->columns + column] : gain;
+}
+
+/* Nodes in units of codes to codes. */
+static lensprof_status prepare_nodes(lensprof_sensor_plan *plan, const lp_sensor_source *s, double largest) {
+    uint32_t *node = (uint32_t *)(void *)(plan + 1);
+    uint32_t shift = LP_SENSOR_LARGEST_SHIFT;
+    while (largest * (double)(1u << shift) > LP_SENSOR_LARGEST_NODE && shift > 0) shift--;
+    if (shift < LP_SENSOR_LEAST_SHIFT) return LENSPROF_ERROR_UNSUPPORTED;
+    plan->grid.shift = (uint8_t)shift;
+    for (uint32_t p = 0; p < plan->grid.planes; p++) {
+        const double scale = lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p) * (double)(1u << shift);
+        for (uint32_t row = 0; row < plan->grid.rows; row++)
+            for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
+                *node = (uint32_t)floor(node_at(s, p, column, row) * scale + 0.5);
+                if (!*node) *node = 1;
+            }
+    }
+    return LENSPROF_OK;
+}
+
+/* The smallest gain of light, and the largest of codes, over all nodes. */
+static void find_extremes(const lensprof_sensor_plan *plan, const lp_sensor_source *s, double *least, double *largest) {
+    *least = 1.0, *largest = 0.0;
+    for (uint32_t p = 0; p < plan->grid.planes; p++)
+        for (uint32_t row = 0; row < plan->grid.rows; row++)
+            for (uint32_t column = 0; column < plan->grid.columns; column++) {
+                const double gain = node_at(s, p, column, row);
+                if (gain < *least) *least = gain;
+                *largest = fmax(*largest, gain * lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p));
+            }
+}
+
+static int32_t level_of(double code) { return (int32_t)floor(code * (1 << LP_SENSOR_LEVEL_SHIFT) + 0.5); }
+
+static void prepare_levels(lensprof_sensor_plan *plan, const lp_sensor_source *s, double least) {
+    const int is_neutral = s->options.saturated == LENSPROF_SATURATED_NEUTRAL && plan->grid.planes > 1
+                           && s->options.direction == LENSPROF_DIRECTION_CORRECT;
+    for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++) {
+        const double black = s->levels[LP_OUTPUT].black[p];
+        plan->black_in[p] = level_of(s->levels[LP_INPUT].black[p]);
+        plan->black_out[p] = level_of(black);
+        plan->largest[p] =
+            (uint32_t)fmax(floor(black + (is_neutral ? least : 1.0) * lp_sensor_span(s, LP_OUTPUT, p) + 0.5), 0.0);
+    }
+}
+
+static size_t bytes_of_nodes(uint32_t nodes) { return sizeof(lensprof_sensor_plan) + nodes * sizeof(uint32_t); }
+
+size_t lensprof_sensor_plan_bytes(const lensprof_readout *readout) {
+    const uint32_t nodes = lp_readout_nodes(readout);
+    return nodes ? bytes_of_nodes(nodes) : 0;
+}
+
+lensprof_status lensprof_sensor_plan_init(void *memory, size_t size, const lensprof_apply_options *options,
+                                          const lensprof_readout *readout, const lensprof_sensor_plan **result,
+                                          lensprof_error *error) {
+    if (!memory || !options || !readout || !result)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "memory, options, readout or plan is NULL");
+    lp_sensor_source source;
+    const lensprof_status status = lp_sensor_source_take(&source, options, readout, error);
+    if (status != LENSPROF_OK) return status;
+    const size_t bytes = bytes_of_nodes(lp_readout_nodes(&source.readout));
+    if (size < bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
+    lensprof_sensor_plan *plan = memory;
+    double least, largest;
+    memset(plan, 0, sizeof *plan);
+    plan->magic = LP_SENSOR_MAGIC, plan->bytes = (uint32_t)bytes;
+    plan->grid = lp_readout_grid(&source.readout, source.options.frame_width, source.options.frame_height);
+    find_extremes(plan, &source, &least, &largest);
+    if (prepare_nodes(plan, &source, largest) != LENSPROF_OK)
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "gains of 4096 or more");
+    prepare_levels(plan, &source, least);
+    plan->check = lp_sensor_check(plan);
+    *result = plan;
+    return lp_fail(error, LENSPROF_OK, "");
+}
