@@ -24,16 +24,18 @@ static inline void put_number(const char *before, uint32_t number) {
 }
 
 /* "name: hexadecimal bytes" */
-static inline void put_row(const char *name, const uint8_t *row) {
+static inline void put_bytes(const char *name, const uint8_t *bytes, uint32_t count) {
     static const char digits[] = "0123456789abcdef";
-    char text[7] = {0};
+    char text[3] = {0};
     put_text(name);
     put_text(": ");
-    for (uint32_t x = 0; x < STRIP_WIDTH; x++) {
-        for (uint32_t i = 0; i < 6; i++) text[i] = digits[row[3 * x + i / 2] >> (i % 2 ? 0 : 4) & 15];
+    for (uint32_t i = 0; i < count; i++) {
+        text[0] = digits[bytes[i] >> 4], text[1] = digits[bytes[i] & 15];
         put_text(text);
     }
     put_text("\n");
 }
+
+static inline void put_row(const char *name, const uint8_t *row) { put_bytes(name, row, 3 * STRIP_WIDTH); }
 
 #endif

@@ -6,7 +6,7 @@
 
 #include <lensprof/profile.h>
 
-#include "demo.h"
+#include "sensor.h"
 
 static uint8_t blob[5000];
 static size_t blob_bytes;
@@ -49,6 +49,22 @@ static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3]) {
            && lensprof_apply(plan, &from, &to, 0, 0) == LENSPROF_OK;
 }
 
+/* 10 bit codes of a mosaic GRBG with a pedestal of 64; the sun saturates. `is_card`: an even light behind a lens. */
+static int render_raw(uint8_t *packed, uint32_t rows, int is_card) {
+    for (uint32_t y = 0; y < rows; y++) {
+        uint16_t row[STRIP_WIDTH];
+        for (uint32_t x = 0; x < STRIP_WIDTH; x++) {
+            const int channel = y % 2 ? (x % 2 ? 1 : 2) : (x % 2 ? 0 : 1);
+            const double dx = (x - 79.5) / 90.0, dy = (y - 31.5) / 90.0, r2 = dx * dx + dy * dy;
+            const double light = is_card ? (0.8 - 0.3 * r2) * (1.0 - 0.1 * channel) : light_at(x, y, channel);
+            row[x] = (uint16_t)(light < 1.0 ? 64.5 + 959.0 * light : 1023.0);
+        }
+        if (lensprof_pack_row(LENSPROF_PACKING_RAW10, row, STRIP_WIDTH, packed + y * RAW_ROW_BYTES) != LENSPROF_OK)
+            return 0;
+    }
+    return 1;
+}
+
 /* Hexadecimal floating point: exact. */
 static void print_response(const char *name, const lensprof_response *r) {
     printf("\nconst lensprof_response %s = {%u, 0, %a, {0.0}, {", name, r->kind, r->gamma);
@@ -56,20 +72,30 @@ static void print_response(const char *name, const lensprof_response *r) {
     printf("}};\n");
 }
 
-static int print_plan(void) {
+static void print_words(const char *name, const uint32_t *words, size_t bytes) {
+    printf("\nconst uint32_t %s_bytes = %u;\nconst uint32_t %s[] = {", name, (unsigned)bytes, name);
+    for (size_t i = 0; i < bytes / 4; i++) printf("%s0x%08x,", i % 8 ? " " : "\n    ", words[i]);
+    printf("};\n");
+}
+
+/* Integer plans for the pixels and for the raw sensor. */
+static int print_plans(void) {
     static uint32_t memory[1 << 10];
     lensprof_apply_options options;
+    lensprof_readout readout;
     const lensprof_fixed_plan *plan;
-    size_t bytes;
+    const lensprof_sensor_plan *of_sensor;
 
     set_options(&options);
     options.blob = blob;
     options.blob_bytes = blob_bytes;
-    bytes = lensprof_fixed_plan_bytes(&options);
     if (lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan, NULL) != LENSPROF_OK) return 0;
-    printf("\nconst uint32_t fixed_plan_bytes = %u;\nconst uint32_t fixed_plan[] = {", (unsigned)bytes);
-    for (size_t i = 0; i < bytes / 4; i++) printf("%s0x%08x,", i % 8 ? " " : "\n    ", memory[i]);
-    printf("};\n");
+    print_words("fixed_plan", memory, lensprof_fixed_plan_bytes(&options));
+    options.input = options.output = LENSPROF_ENCODING_LINEAR;
+    if (set_readout(&readout) != LENSPROF_OK
+        || lensprof_sensor_plan_init(memory, sizeof memory, &options, &readout, &of_sensor, NULL) != LENSPROF_OK)
+        return 0;
+    print_words("sensor_plan", memory, lensprof_sensor_plan_bytes(&readout));
     return 1;
 }
 
@@ -93,16 +119,20 @@ static void print_bytes(const char *name, const uint8_t *bytes, size_t count) {
 }
 
 int main(void) {
-    static uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3];
-    if (!pack() || lensprof_response_set_gamma(&gamma_made, 2.2) != LENSPROF_OK || !render(rows)) return 1;
+    static uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3], raw[STRIP_ROWS * RAW_ROW_BYTES], card[CARD_ROWS * RAW_ROW_BYTES];
+    if (!render_raw(raw, STRIP_ROWS, 0) || !render_raw(card, CARD_ROWS, 1) || !pack()
+        || lensprof_response_set_gamma(&gamma_made, 2.2) != LENSPROF_OK || !render(rows))
+        return 1;
     printf("/* Written by make_data. */\n#include \"data.h\"\n\nconst lensprof_vignetting camera_falloff[3] = {\n");
     for (int c = 0; c < 3; c++)
         printf("    {{%a, %a, %a}, {%a, %a}},\n", camera_falloff[c].k[0], camera_falloff[c].k[1],
                camera_falloff[c].k[2], camera_falloff[c].center[0], camera_falloff[c].center[1]);
     printf("};\n");
     print_bytes("strip", (const uint8_t *)rows, sizeof rows);
+    print_bytes("raw_strip", raw, sizeof raw);
+    print_bytes("raw_card", card, sizeof card);
     print_bytes("camera_blob", blob, blob_bytes);
     printf("const uint32_t camera_blob_bytes = %u;\n", (unsigned)blob_bytes);
     print_response("camera_gamma", &gamma_made);
-    return print_plan() ? 0 : 1;
+    return print_plans() ? 0 : 1;
 }

@@ -11,6 +11,16 @@ typedef struct random_case {
     uint32_t sample, layout, width, x0, y0;
 } random_case;
 
+/* The bytes that this sensor plan gives on the machine that wrote the cases. */
+typedef struct sensor_row {
+    const uint32_t *plan;
+    uint32_t plan_bytes;
+    const uint32_t *in, *wanted; /* samples of a row */
+    uint32_t width, x0, y0;
+} sensor_row;
+
+extern const sensor_row sensor_rows[];
+extern const uint32_t sensor_row_count;
 extern const random_case cases[];
 extern const uint32_t case_count;
 

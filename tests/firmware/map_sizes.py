@@ -70,7 +70,8 @@ def main():
     emor = any("emor" in name for name in sizes)
     if emor:
         print("the EMoR tables are linked, but applying does not need them")
-    nothing = not flash or not stack or "core: row_scalar.o" not in sizes and "core: fixed.o" not in sizes
+    applying = {"core: row_scalar.o", "core: fixed.o", "core: sensor.o"}
+    nothing = not flash or not stack or not applying & sizes.keys()
     return int(flash > int(sys.argv[3]) or ram > int(sys.argv[4]) or emor or nothing)
 
 

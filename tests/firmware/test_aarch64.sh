@@ -1,6 +1,6 @@
 #!/bin/bash
 # The core on a 64-bit ARM: the NEON kernel gives the same bytes as the scalar one, and all results of apply.h,
-# fixed.h and packed.h are the same as here.
+# fixed.h, packed.h and sensor.h are the same as here.
 # usage: test_aarch64.sh SOURCE_DIR WORK_DIR
 set -euo pipefail
 source_dir=$1 work=$2 cc=aarch64-linux-gnu-gcc
@@ -17,7 +17,7 @@ aarch64-linux-gnu-objdump -d "$work/row_neon.o" | grep -c 'v[0-9]*\.4s' | sed 's
 # Every instruction is interpreted, so only a third of the kernels' rows is tested, or all of them if LENSPROF_PERCENT
 # is 100.
 export LENSPROF_PERCENT="${LENSPROF_PERCENT:-33}"
-for test in test_kernels test_apply test_fixed test_packed; do
+for test in test_kernels test_apply test_fixed test_packed test_sensor; do
     $cc "${flags[@]}" -static "tests/unit/$test.c" "$work"/*.o -lm -o "$work/$test"
     qemu-aarch64 "$work/$test"
 done

@@ -32,6 +32,15 @@ sys.exit(not rows or len(both) != 16 * 160 * 3 or differ > int(sys.argv[4]) or w
 END
 }
 
+# rows BOARD PROGRAM PC_PROGRAM COUNT: the lines of bytes are those of this machine
+rows() {
+    local on_board=$work/-Os/$1/$2.txt
+    semihosted "$1" "${on_board%.txt}.elf" > "$on_board" || { cut -c1-200 "$on_board"; exit 1; }
+    [ "$(grep -c ': [0-9a-f]\{200,\}$' "$on_board")" = "$4" ]
+    cmp <(grep ': [0-9a-f]\{200,\}$' "$on_board") <(grep ': [0-9a-f]\{200,\}$' "$work/-Os/$3.txt")
+    echo "$2, $1: $4 lines, the bytes of this machine"
+}
+
 # stack_and_time BOARD PROGRAM MOST TICK_NS: MOST is the limit that the header states for apply
 stack_and_time() {
     local text=$work/-Os/$1/$2.txt
@@ -67,5 +76,12 @@ same microbit correct_fixed_here fixed correct_fixed 20 # the board's own logari
 for program in correct_fixed correct_fixed_here; do stack_and_time microbit $program 512 16; done
 size microbit -Os correct_fixed 8192 1024
 size microbit -Os correct_fixed_here 28672 4096 # with software floating point, to prepare the plan
+for board in mps2-an386 mps2-an500 microbit; do
+    rows $board correct_sensor correct_sensor 16
+    rows $board capture_flat capture_flat 2
+    size $board -Os correct_sensor 4096 1024
+done
+rows mps2-an386 correct_sensor_here correct_sensor 16 # the plan made from the blob, on the board
+rows mps2-an500 correct_sensor_here correct_sensor 16
 build -O2 all mps2-an386
 size mps2-an386 -O2 correct_float 28672 8192 # optimised for speed
