@@ -23,4 +23,12 @@
 #define LP_HAS_CIRCLE 1
 #endif
 
+/* -DLENSPROF_NO_WIDE_CURVES leaves out, in integers (fixed.h), 16 bit samples through a response, and between 8 and 16
+ * bit; plans that need it are then CORRUPT. */
+#ifdef LENSPROF_NO_WIDE_CURVES
+#define LP_HAS_WIDE_CURVES 0
+#else
+#define LP_HAS_WIDE_CURVES 1
+#endif
+
 #endif

@@ -2,8 +2,8 @@
  * that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
 #include <string.h>
 
-#include "core/features.h"
 #include "core/fixed_plan.h"
+#include "core/response.h"
 
 #define LARGEST_FACTOR (51 << LP_LOG_SHIFT) /* options allow 1e12, levels 1e3, and their inverses */
 #define LARGEST_LEVEL (1 << 24)             /* 65535 in the units of levels, rounded up */
@@ -20,6 +20,7 @@ static int is_layout_sound(const lensprof_fixed_plan *plan) {
     uint8_t channel_of_sample[4], site[2][2] = {{0, 0}, {0, 0}};
     const uint32_t samples = lensprof_layout_samples(plan->layout);
     if (!samples || plan->layout == LENSPROF_LAYOUT_PLANAR || plan->sample > LENSPROF_SAMPLE_U16) return 0;
+    if (LP_HAS_WIDE_CURVES ? plan->target > LENSPROF_SAMPLE_U16 : plan->target != plan->sample) return 0;
     lp_layout_sites(plan->layout, channel_of_sample, site);
     return plan->samples == samples && plan->channels == lensprof_layout_channels(plan->layout)
            && !memcmp(plan->channel_of_sample, channel_of_sample, sizeof channel_of_sample)
@@ -56,8 +57,8 @@ static int are_gains_sound(const lensprof_fixed_plan *plan) {
 
 /* Differences of codes and black fit into 25 bits. */
 static int are_levels_sound(const lensprof_fixed_plan *plan) {
-    if (plan->levels > LP_HAS_LEVELS || plan->reserved) return 0;
-    if (plan->largest < 0 || plan->largest > (plan->sample == LENSPROF_SAMPLE_U8 ? 255 : 65535)) return 0;
+    if (plan->levels > LP_HAS_LEVELS) return 0;
+    if (plan->largest < 0 || plan->largest > (lp_fixed_target(plan) == LENSPROF_SAMPLE_U8 ? 255 : 65535)) return 0;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
         const int32_t in = plan->black_in[c], out = plan->black_out[c];
         if (in > LARGEST_LEVEL || out > LARGEST_LEVEL || in < -LARGEST_LEVEL / 2 || out < -LARGEST_LEVEL / 2) return 0;
@@ -65,12 +66,44 @@ static int are_levels_sound(const lensprof_fixed_plan *plan) {
     return 1;
 }
 
+#if LP_HAS_WIDE_CURVES
+/* Samples that rise, between the codes. */
+static int are_samples_sound(const int32_t *samples) {
+    if (samples[0] < -(1 << 29) || samples[LP_CURVE_LAST] > 1 << 30) return 0;
+    for (uint32_t j = 0; j < LP_CURVE_LAST; j++)
+        if (samples[j + 1] < samples[j]) return 0;
+    return 1;
+}
+
+/* Logarithms stay below 2^31 with any gain; samples lie within the plan. */
+static int are_curves_sound(const lensprof_fixed_plan *plan) {
+    const lp_fixed_curve *curves = (const lp_fixed_curve *)(const void *)(plan + 1);
+    const uint32_t count = plan->decode_curves + plan->encode_curves, first = count * (sizeof *curves / 4);
+    const uint32_t words = (plan->bytes - (uint32_t)sizeof *plan) / 4;
+    if (words < first || (words - first) % LENSPROF_RESPONSE_SAMPLES) return 0;
+    for (const lp_fixed_curve *c = curves; c < curves + count; c++) {
+        if (c->log_one < 0 || c->log_one > 32 << LP_LOG_SHIFT || (c->most && c->most != LP_LOG_MOST)) return 0;
+        if (c->exponent > 10u << LP_EXPONENT_SHIFT) return 0;
+        if (!c->samples && (!c->one || c->one > LARGEST_LEVEL + LARGEST_LEVEL / 2)) return 0;
+        if (!c->samples) continue;
+        if (c->samples < first || c->samples > words || words - c->samples < LENSPROF_RESPONSE_SAMPLES) return 0;
+        if (c->one != (uint32_t)LP_CURVE_LAST << LP_PLACE_SHIFT) return 0;
+        if (!are_samples_sound((const int32_t *)(const void *)(plan + 1) + c->samples)) return 0;
+    }
+    return 1;
+}
+#endif
+
 static int are_tables_sound(const lensprof_fixed_plan *plan) {
     const uint32_t decode = plan->decode_curves, encode = plan->encode_curves;
     const int32_t *table = (const int32_t *)(const void *)(plan + 1);
-    const int is_coded = plan->sample == LENSPROF_SAMPLE_U8;
+    const int is_coded = lp_fixed_is_8_bit(plan);
     const int is_linear = !decode && !encode && (!is_coded || plan->levels);
-    if (!is_linear && !(is_coded && is_one_or_three(decode) && is_one_or_three(encode))) return 0;
+    if (!is_linear && !((is_coded || LP_HAS_WIDE_CURVES) && is_one_or_three(decode) && is_one_or_three(encode)))
+        return 0;
+#if LP_HAS_WIDE_CURVES
+    if (lp_fixed_is_wide(plan)) return are_curves_sound(plan);
+#endif
     if (plan->bytes != sizeof *plan + (decode + encode) * LP_CODES * sizeof *table) return 0;
     for (uint32_t i = 0; i < decode * LP_CODES; i++)
         if (size_of(table[i]) > size_of(LP_LOG_NONE)) return 0;

@@ -7,6 +7,7 @@
 #include "core/fail.h"
 #include "core/levels.h"
 #include "core/plan.h"
+#include "core/response.h"
 
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
@@ -37,16 +38,39 @@ static int have_own_black(const lp_model *m) {
     return differ;
 }
 
+/* Whether samples of 16 bit come in or go out. */
+static int is_wide(const lensprof_apply_options *o) {
+    return o->source_sample != LENSPROF_SAMPLE_U8 || o->target_sample != LENSPROF_SAMPLE_U8;
+}
+
 static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     const int is_linear_in = is_linear(o, m, LP_INPUT), is_linear_out = is_linear(o, m, LP_OUTPUT);
-    if (o->source_sample != LENSPROF_SAMPLE_U8 || (lp_model_has_levels(m) && is_linear_in && is_linear_out)) return 0;
+    if ((is_wide(o) || lp_model_has_levels(m)) && is_linear_in && is_linear_out) return 0;
     if (have_own_black(m) && lensprof_layout_channels(o->source_layout) == 3) return 3;
     return (end == LP_INPUT ? is_linear_in : is_linear_out) ? 1 : lp_curves(o, m);
 }
 
+/* Whether the output is encoded as the input is, so that one table is enough. */
+static int are_ends_equal(const lensprof_apply_options *o, const lp_model *m) {
+    return o->source_sample == o->target_sample && o->input == o->output && !m->outputs
+           && !memcmp(lp_levels_of(m, LP_INPUT), lp_levels_of(m, LP_OUTPUT), sizeof(lensprof_levels));
+}
+
+/* Curves of an end that have samples of their own. */
+static uint32_t sampled_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < tables_of(o, m, end) && !(end == LP_OUTPUT && are_ends_equal(o, m)); c++) {
+        const struct lp_model_response response = response_of(o, m, end, c);
+        count += !lp_is_power(&response);
+    }
+    return count;
+}
+
 static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
-    return sizeof(lensprof_fixed_plan)
-           + (tables_of(o, m, LP_INPUT) + tables_of(o, m, LP_OUTPUT)) * (LP_CODES * sizeof(int32_t));
+    const uint32_t tables = tables_of(o, m, LP_INPUT) + tables_of(o, m, LP_OUTPUT);
+    if (!LP_HAS_WIDE_CURVES || !is_wide(o)) return sizeof(lensprof_fixed_plan) + tables * (LP_CODES * sizeof(int32_t));
+    return sizeof(lensprof_fixed_plan) + tables * sizeof(lp_fixed_curve)
+           + (sampled_of(o, m, LP_INPUT) + sampled_of(o, m, LP_OUTPUT)) * LENSPROF_RESPONSE_SAMPLES * sizeof(int32_t);
 }
 
 /* ---- falloff ---- */
@@ -100,6 +124,12 @@ static int32_t log_of(double light) {
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }
 
+/* The largest code. */
+static double full_scale_of(const lensprof_fixed_plan *plan, enum lp_end end) {
+    return lp_fixed_is_8_bit(plan) || (end == LP_OUTPUT && lp_fixed_target(plan) == LENSPROF_SAMPLE_U8) ? 255.0
+                                                                                                        : 65535.0;
+}
+
 /* B of a sample 0..1. Grey is treated as green. */
 static double grey_of(const lensprof_fixed_plan *plan, const lp_model *m, enum lp_end end, uint32_t curve,
                       double sample) {
@@ -128,20 +158,69 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
     }
 }
 
+#if LP_HAS_WIDE_CURVES
+/* Of samples of 16 bit. */
+static lp_fixed_curve curve_of(const lensprof_fixed_plan *plan, const lp_model *m, enum lp_end end, uint32_t channel,
+                               const struct lp_model_response *response) {
+    lp_fixed_curve curve = {0, LP_CURVE_LAST << LP_PLACE_SHIFT, 0, 0, 1u << LP_EXPONENT_SHIFT};
+    double one = curve.one;
+    if (lp_is_power(response)) {
+        const double gamma = end == LP_INPUT ? response->gamma : 1.0 / response->gamma;
+        one = full_scale_of(plan, end) * (1 << LP_LEVEL_SHIFT) * lp_level_span(lp_levels_of(m, end), channel);
+        curve.one = (uint32_t)(one + 0.5);
+        curve.exponent = (uint32_t)(gamma * (1 << LP_EXPONENT_SHIFT) + 0.5);
+    }
+    curve.log_one = log_of(one);
+    return curve;
+}
+
+static void prepare_samples(const lensprof_fixed_plan *plan, const lp_model *m, enum lp_end end, uint32_t channel,
+                            const struct lp_model_response *response, int32_t *samples) {
+    const lensprof_levels *levels = lp_levels_of(m, end);
+    const double unit = full_scale_of(plan, end) * (1 << LP_SAMPLE_SHIFT);
+    for (uint32_t j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
+        const double grey = lp_model_sample(response, j);
+        samples[j] = (int32_t)floor(unit * lensprof_levels_to_sample(levels, channel, grey) + 0.5);
+    }
+}
+
+static void prepare_curves(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
+    lp_fixed_curve *curves = (lp_fixed_curve *)(void *)(plan + 1), *curve = curves;
+    int32_t *words = (int32_t *)(void *)curves;
+    uint32_t next = (plan->decode_curves + plan->encode_curves) * (sizeof *curves / sizeof *words);
+    for (int end = LP_INPUT; end <= LP_OUTPUT; end++)
+        for (uint32_t c = 0; c < (end == LP_INPUT ? plan->decode_curves : plan->encode_curves); c++, curve++) {
+            const struct lp_model_response response = response_of(o, m, end, c);
+            const uint32_t channel = plan->channels == 1 ? 1 : c; /* grey is treated as green */
+            *curve = curve_of(plan, m, end, channel, &response);
+            if (is_linear(o, m, end)) curve->most = LP_LOG_MOST;
+            if (lp_is_power(&response)) continue;
+            curve->samples = next;
+            if (end == LP_OUTPUT && are_ends_equal(o, m))
+                curve->samples = curves[c].samples;
+            else {
+                prepare_samples(plan, m, end, channel, &response, words + next);
+                next += LENSPROF_RESPONSE_SAMPLES;
+            }
+        }
+}
+#endif
+
 /* ---- plan ---- */
 
 static lensprof_status validate(const lensprof_apply_options *given, lensprof_apply_options *o, lp_model *m,
                                 lensprof_error *error) {
     const lensprof_status status = lp_options_validate(given, o, m, error);
     if (status != LENSPROF_OK) return status;
-    if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
-        || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
-        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
-                       "integers take U8 and U16 to the same, no planes, grid or dither");
+    if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample > LENSPROF_SAMPLE_U16
+        || (!LP_HAS_WIDE_CURVES && o->target_sample != o->source_sample) || o->source_layout == LENSPROF_LAYOUT_PLANAR
+        || m->columns || o->dither)
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U8 and U16, no planes, grid or dither");
     if (LP_HAS_CIRCLE && m->circle.radius > 0.0)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take an image circle");
     if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
-    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
+    if (!LP_HAS_WIDE_CURVES && o->source_sample == LENSPROF_SAMPLE_U16
+        && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");
     return LENSPROF_OK;
 }
@@ -155,6 +234,7 @@ size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options) {
 
 static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     plan->sample = (uint8_t)o->source_sample;
+    plan->target = (uint8_t)o->target_sample;
     plan->layout = (uint8_t)o->source_layout;
     plan->samples = (uint8_t)lensprof_layout_samples(plan->layout);
     plan->channels = (uint8_t)lensprof_layout_channels(plan->layout);
@@ -166,13 +246,9 @@ static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->encode_curves = (uint8_t)tables_of(o, m, LP_OUTPUT);
 }
 
-static double full_scale_of(const lensprof_fixed_plan *plan) {
-    return plan->sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0;
-}
-
 #if LP_HAS_LEVELS
-static int32_t level_of(const lensprof_fixed_plan *plan, double sample) {
-    return (int32_t)floor(full_scale_of(plan) * sample * (1 << LP_LEVEL_SHIFT) + 0.5);
+static int32_t level_of(const lensprof_fixed_plan *plan, enum lp_end end, double sample) {
+    return (int32_t)floor(full_scale_of(plan, end) * sample * (1 << LP_LEVEL_SHIFT) + 0.5);
 }
 
 static void prepare_levels(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
@@ -181,21 +257,24 @@ static void prepare_levels(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->levels = 1;
     for (uint32_t row = 0; row < LP_CHANNELS; row++) {
         const uint32_t c = plan->channels == 1 ? 1 : row; /* grey is treated as green */
-        plan->black_in[row] = level_of(plan, in->black[c]);
-        plan->black_out[row] = level_of(plan, out->black[c]);
-        plan->per_span[row] = (uint32_t)(65535.0 * 65536.0 / level_of(plan, lp_level_span(in, c)) + 0.5);
+        plan->black_in[row] = level_of(plan, LP_INPUT, in->black[c]);
+        plan->black_out[row] = level_of(plan, LP_OUTPUT, out->black[c]);
+        const double per_span = 256.0 * 65535.0 / level_of(plan, LP_INPUT, lp_level_span(in, c));
+        plan->per_span[row] = (uint32_t)(per_span * (1u << lp_fixed_span_shift(plan)) + 0.5);
     }
-    plan->largest = (int32_t)floor(full_scale_of(plan) * lp_highlight_level(o, m, !plan->decode_curves) + 0.5);
+    plan->largest =
+        (int32_t)floor(full_scale_of(plan, LP_OUTPUT) * lp_highlight_level(o, m, is_linear(o, m, LP_OUTPUT)) + 0.5);
 }
 #endif
 
-/* The ratio of exposures and, if codes stay codes, of white less black. */
+/* The ratio of exposures and, if codes stay codes, of white less black, in codes. */
 static double factor_of(const lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m,
                         uint32_t channel) {
     const double ratio = lp_exposure_ratio(o, channel);
-    if (!LP_HAS_LEVELS || plan->decode_curves) return ratio;
-    const double spans =
-        lp_level_span(lp_levels_of(m, LP_OUTPUT), channel) / lp_level_span(lp_levels_of(m, LP_INPUT), channel);
+    if ((!LP_HAS_LEVELS && !LP_HAS_WIDE_CURVES) || plan->decode_curves) return ratio;
+    double spans = full_scale_of(plan, LP_OUTPUT) / full_scale_of(plan, LP_INPUT);
+    if (LP_HAS_LEVELS)
+        spans *= lp_level_span(lp_levels_of(m, LP_OUTPUT), channel) / lp_level_span(lp_levels_of(m, LP_INPUT), channel);
     return plan->simulate ? ratio / spans : ratio * spans;
 }
 
@@ -224,7 +303,7 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lenspr
     if (!prepare_falloffs(&head, options, &model))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "the falloff is too steep for integers");
     prepare_gains(&head, options, &model);
-    head.largest = (int32_t)full_scale_of(&head);
+    head.largest = (int32_t)full_scale_of(&head, LP_OUTPUT);
 #if LP_HAS_LEVELS
     prepare_levels(&head, options, &model);
 #endif
@@ -233,7 +312,12 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lenspr
     if (size < head.bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
     lensprof_fixed_plan *plan = memory;
     *plan = head;
-    prepare_tables(plan, options, &model);
+#if LP_HAS_WIDE_CURVES
+    if (is_wide(options))
+        prepare_curves(plan, options, &model);
+    else
+#endif
+        prepare_tables(plan, options, &model);
     plan->check = lp_fixed_check(plan);
     *result = plan;
     return lp_fail(error, LENSPROF_OK, "");

@@ -112,12 +112,9 @@ static int are_linear(const lensprof_response *responses, uint32_t count, uint32
     return 1;
 }
 
-/* The formula of apply.h for a sample of a channel at a pixel. */
-static inline double reference(const model *m, double sample, uint32_t c, uint32_t x, uint32_t y) {
+/* What the light of a channel is multiplied by at a pixel. */
+static inline double reference_gain(const model *m, uint32_t c, uint32_t x, uint32_t y) {
     const lensprof_apply_options *o = &m->options;
-    const double value = o->levels ? lensprof_levels_to_value(o->levels, c, sample) : sample;
-    const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
-    const lensprof_response *out = o->output_responses ? &m->output[o->output_responses == 3 ? c : 0] : r;
     const lensprof_vignetting *v = &m->vignetting[o->vignettings == 3 ? c : 0];
     double r2 = lensprof_vignetting_r2(v, o->frame_width, o->frame_height, x, y, NULL);
     double falloff = lensprof_vignetting_eval(v, r2, NULL);
@@ -128,6 +125,15 @@ static inline double reference(const model *m, double sample, uint32_t c, uint32
         falloff = 1.0;
     double ratio =
         (exp2(o->target.ev) * o->target.white_balance[c]) / (exp2(o->source.ev) * o->source.white_balance[c]);
+    return o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
+}
+
+/* The sample of a channel after its light is multiplied by a gain. */
+static inline double reference_of_gain(const model *m, double sample, uint32_t c, double gain) {
+    const lensprof_apply_options *o = &m->options;
+    const double value = o->levels ? lensprof_levels_to_value(o->levels, c, sample) : sample;
+    const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
+    const lensprof_response *out = o->output_responses ? &m->output[o->output_responses == 3 ? c : 0] : r;
     const int any = has_levels(m);
     const int linear_in =
         o->input == LENSPROF_ENCODING_LINEAR || (any && are_linear(m->response, o->responses, o->source_layout));
@@ -136,9 +142,14 @@ static inline double reference(const model *m, double sample, uint32_t c, uint32
                                && (o->output_responses ? are_linear(m->output, o->output_responses, o->source_layout)
                                                        : are_linear(m->response, o->responses, o->source_layout)));
     double light = linear_in ? value : lensprof_response_invert(r, value, NULL);
-    light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
+    light *= gain;
     light = linear_out ? light : lensprof_response_eval(out, light, NULL);
     return o->output_levels ? lensprof_levels_to_sample(o->output_levels, c, light) : light;
+}
+
+/* The formula of apply.h for a sample of a channel at a pixel. */
+static inline double reference(const model *m, double sample, uint32_t c, uint32_t x, uint32_t y) {
+    return reference_of_gain(m, sample, c, reference_gain(m, c, x, y));
 }
 
 #endif
