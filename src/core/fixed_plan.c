@@ -151,9 +151,10 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
         const struct lp_model_response response = response_of(o, m, LP_OUTPUT, c);
         for (uint32_t code = 0; code < LP_CODES; code++) {
             const double grey = grey_of(plan, m, LP_OUTPUT, c, (code + 0.5) / 255.0);
-            table[code] = grey >= 1.0   ? INT32_MAX /* no code is whiter */
-                          : grey <= 0.0 ? INT32_MIN /* nor darker */
-                                        : log_of(lp_model_invert(&response, grey));
+            if (grey >= 1.0 || code >= (uint32_t)plan->largest)
+                table[code] = INT32_MAX; /* no code is whiter */
+            else
+                table[code] = grey <= 0.0 ? INT32_MIN /* nor darker */ : log_of(lp_model_invert(&response, grey));
         }
     }
 }

@@ -121,6 +121,41 @@ static void test_a_clipped_ramp_stays_grey(void **state) {
         }
 }
 
+/* White of encoded samples as light, under the same light: grey too, of all sample types and in both kinds of plans. */
+static void test_encoded_white_becomes_grey_light(void **state) {
+    (void)state;
+    static uint64_t memory[1 << 16];
+    lensprof_profile profile;
+    lensprof_apply_options options;
+    const double balance[3] = {0.5, 1.0, 0.6};
+    profile_of_sensor(&profile, &options, LENSPROF_LAYOUT_RGB);
+    profile.levels = (lensprof_levels){{0.05, 0.05, 0.05}, 0.0};
+    assert_ok(lensprof_response_set_gamma(&profile.response[0], 2.0));
+    options.output = LENSPROF_ENCODING_LINEAR;
+    options.output_levels = NULL;
+    options.source.ev = 1.0;
+    memcpy(options.source.white_balance, balance, sizeof balance);
+    for (uint32_t types = 0; types < 4; types++) {
+        const uint16_t white[3] = {65535, 65535, 65535};
+        uint16_t found[2][3] = {{0}};
+        options.source_sample = types & 1, options.target_sample = types >> 1;
+        const lensprof_image from = {white, 6, 1, 1, options.source_sample, LENSPROF_LAYOUT_RGB};
+        lensprof_target to = {found[0], 6, 1, 1, options.target_sample, LENSPROF_LAYOUT_RGB};
+        const lensprof_plan *plan;
+        const lensprof_fixed_plan *fixed;
+        assert_ok(lensprof_plan_init(memory, sizeof memory, &options, &plan, NULL));
+        assert_ok(lensprof_apply(plan, &from, &to, 0, 0));
+        to.data = found[1];
+        assert_ok(lensprof_fixed_plan_init(memory, sizeof memory, &options, &fixed, NULL));
+        assert_ok(lensprof_fixed_apply(fixed, &from, &to, 0, 0));
+        for (int c = 0; c < 3 && options.target_sample == LENSPROF_SAMPLE_U16; c++)
+            for (int kind = 0; kind < 2; kind++) assert_in_range(found[kind][c], 32767, 32768);
+        if (options.target_sample == LENSPROF_SAMPLE_U16) continue;
+        const uint8_t grey[3] = {128, 128, 128};
+        for (int kind = 0; kind < 2; kind++) assert_memory_equal(found[kind], grey, sizeof grey);
+    }
+}
+
 /* Blobs hold levels; the plan made from one equals that made from its profile. Levels of the options replace them. */
 static void test_blobs_hold_levels(void **state) {
     (void)state;
@@ -211,6 +246,7 @@ int main(void) {
         cmocka_unit_test(test_validation),
         cmocka_unit_test(test_mosaic_of_12_bit),
         cmocka_unit_test(test_a_clipped_ramp_stays_grey),
+        cmocka_unit_test(test_encoded_white_becomes_grey_light),
         cmocka_unit_test(test_blobs_hold_levels),
         cmocka_unit_test(test_blobs_with_wrong_levels),
         cmocka_unit_test(test_what_has_no_room_for_levels),
