@@ -8,7 +8,7 @@ typedef struct random_case {
     const uint32_t *plan;
     uint32_t plan_bytes;
     const uint32_t *in, *wanted; /* samples of a row, and their expected values */
-    uint32_t sample, layout, width, x0, y0;
+    uint32_t sample, target, layout, width, x0, y0;
 } random_case;
 
 /* The bytes that this sensor plan gives on the machine that wrote the cases. */

@@ -26,13 +26,13 @@ static uint32_t check(const random_case *c) {
     static uint16_t out[512];
     const lensprof_fixed_plan *plan;
     const lensprof_image from = {c->in, 0, c->width, 1, c->sample, c->layout};
-    const lensprof_target to = {out, 0, c->width, 1, c->sample, c->layout};
+    const lensprof_target to = {out, 0, c->width, 1, c->target, c->layout};
     uint32_t worst = 0;
     if (lensprof_fixed_plan_open(c->plan, c->plan_bytes, &plan) != LENSPROF_OK
         || lensprof_fixed_apply(plan, &from, &to, c->x0, c->y0) != LENSPROF_OK)
         return 65536;
     for (uint32_t i = 0; i < c->width * lensprof_layout_samples(c->layout); i++, samples++) {
-        const uint32_t is = sample_at(out, c->sample, i), wanted = sample_at(c->wanted, c->sample, i);
+        const uint32_t is = sample_at(out, c->target, i), wanted = sample_at(c->wanted, c->target, i);
         const uint32_t error = is > wanted ? is - wanted : wanted - is;
         same += !error;
         if (error > worst) worst = error;

@@ -6,6 +6,7 @@
 
 enum {
     CASES = 40,
+    WIDE = 6, /* the last ones: 16 bit through curves, and between 8 and 16 bit */
     SENSORS = 40,
     SENSOR_PIXELS = 100
 };
@@ -41,19 +42,22 @@ int main(void) {
     printf("/* Written by make_cases. */\n#include \"cases.h\"\n\nconst uint32_t case_count = %d;\n", CASES);
     for (int n = 0; n < CASES; n++) {
         static uint32_t words[ROOM / 4];
-        make_case(&f, n % 4 ? LENSPROF_SAMPLE_U8 : LENSPROF_SAMPLE_U16, &random);
+        if (n < CASES - WIDE)
+            make_case(&f, n % 4 ? LENSPROF_SAMPLE_U8 : LENSPROF_SAMPLE_U16, &random);
+        else
+            make_wide_case(&f, n % 3 != 2, n % 3 != 1, n % 2, &random);
         print_words("plan", n, f.memory, lensprof_fixed_plan_bytes(&f.m.options) / 4);
         memcpy(words, f.in, sizeof words);
         print_words("in", n, words, (PIXELS * f.bytes + 3) / 4);
         memset(words, 0, sizeof words);
         for (uint32_t i = 0; i < PIXELS * lensprof_layout_samples(f.from.layout); i++)
-            if (f.from.sample == LENSPROF_SAMPLE_U8)
+            if (f.to.sample == LENSPROF_SAMPLE_U8)
                 ((uint8_t *)words)[i] = (uint8_t)wanted_at(&f, i);
             else
                 ((uint16_t *)words)[i] = (uint16_t)wanted_at(&f, i);
-        print_words("wanted", n, words, (PIXELS * f.bytes + 3) / 4);
-        printf("#define CASE_%d {plan_%d, sizeof plan_%d, in_%d, wanted_%d, %u, %u, %u, %u, %u}\n", n, n, n, n, n,
-               f.from.sample, f.from.layout, PIXELS, f.x0, f.y0);
+        print_words("wanted", n, words, sizeof words / 4);
+        printf("#define CASE_%d {plan_%d, sizeof plan_%d, in_%d, wanted_%d, %u, %u, %u, %u, %u, %u}\n", n, n, n, n, n,
+               f.from.sample, f.to.sample, f.from.layout, PIXELS, f.x0, f.y0);
     }
     printf("const random_case cases[] = {");
     for (int n = 0; n < CASES; n++) printf("CASE_%d, ", n);

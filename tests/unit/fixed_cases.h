@@ -6,8 +6,6 @@
 
 #include <lensprof/fixed.h>
 
-#include <core/fixed_plan.h>
-
 #ifndef PIXELS
 #define PIXELS 200
 #endif
@@ -86,6 +84,13 @@ static double value_at(const uint8_t *data, uint32_t sample, uint32_t i) {
 
 static inline double full_scale(uint32_t sample) { return sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0; }
 
+/* Whether LENSPROF_SATURATED_NEUTRAL applies to pixels. */
+static inline int is_neutral_white(const lensprof_apply_options *o) {
+    return o->saturated == LENSPROF_SATURATED_NEUTRAL && o->direction == LENSPROF_DIRECTION_CORRECT
+           && o->input == LENSPROF_ENCODING_RESPONSE && o->output == LENSPROF_ENCODING_RESPONSE
+           && lensprof_layout_samples(o->source_layout) >= 3;
+}
+
 static inline double towards_white(double value, double low) {
     const double t = fmin(fmax((value - low) / (1.0 - low), 0.0), 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -114,8 +119,8 @@ static inline double wanted_at(const fixture *f, uint32_t i) {
                  code = value_at(f->in, f->from.sample, i);
     const int c = channel_at(f->from.layout, i % samples, x, f->y0);
     if (c < 0) return floor(code / full * unit + 0.5);
-    const double gain = f->plan->neutral_white ? gain_towards_white(f, (uint32_t)c, i / samples)
-                                               : reference_gain(&f->m, (uint32_t)c, x, f->y0);
+    const double gain = is_neutral_white(&f->m.options) ? gain_towards_white(f, (uint32_t)c, i / samples)
+                                                        : reference_gain(&f->m, (uint32_t)c, x, f->y0);
     const double result = reference_of_gain(&f->m, code / full, (uint32_t)c, gain);
     return floor(unit * fmin(fmax(result, 0.0), white_of_output(&f->m)) + 0.5);
 }
