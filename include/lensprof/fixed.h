@@ -11,19 +11,30 @@
  *     if (status == LENSPROF_OK) status = lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan, &error);
  *     if (status == LENSPROF_OK) status = lensprof_fixed_apply(plan, NULL, &picture, 0, 0);
  *
- * Light and gains are logarithms: removing falloff and exposure is one addition per sample, followed by a search among
- * the thresholds between grey values. Results are within 1 level of those in double precision.
+ * Light and gains are logarithms: removing falloff and exposure is one addition per sample. From 8 to 8 bit, a search
+ * among the thresholds between grey values follows; otherwise curves are evaluated. Results are within 1 level of those
+ * in double precision; in 16 bit, for a gamma of the input up to 5 and an output with x f'(x) up to 5, which concave
+ * responses have up to 1 and gamma has up to 1 / gamma.
  *
  *   log2 g(B) + log2(e' w' / (e w)) - log2 M   ->   the grey value with that light        apply.h, correct
  *
  * A plan is prepared with floating point (in software: some 100 ms on a Cortex-M0+ at 48 MHz), or on another machine
  * and copied, as it contains no address. Processing pixels then needs no floating point, no heap, no I/O, and at most
  * 512 bytes of stack; lensprof_fixed_plan_init takes up to 2 KiB. Formats: U8 and U16 in layouts GREY to BGRA and
- * mosaics, with equal input and output sample types; U16 requires linear input and output (by their encoding, or
- * because the response is linear). Black and white levels count in 1 / 256 of a code. A plan takes about 200 bytes, and
- * for U8 2 KiB more per response, unless it is linear and has levels. Gain grids, image circles, dither and planes are
- * UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different
- * tiles. */
+ * mosaics, from either type to either, encoded or linear. Black and white levels count in 1 / 256 of a code. A plan
+ * takes about 200 bytes. From U8 to U8 it takes 2 KiB more per response, unless it is linear and has levels; otherwise
+ * 4 KiB more for each response with samples (TABLE, EMOR) of the input, and of the output unless that is encoded in the
+ * same way, and 20 bytes for each that is linear or GAMMA. Gain grids, image circles, dither and planes are
+ * UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different tiles.
+ *
+ * Companded samples of a sensor, here of 12 bit, are a response: a table in, linear out.
+ *
+ *     static const double knees[] = {0.0, 0.5, 0.7, 0.8, 0.875, 0.925, 0.95, 0.975, 1.0}; // codes of light 0, 1/8, ..1
+ *     lensprof_levels levels = {{240 / 65535.0, 240 / 65535.0, 240 / 65535.0}, 4095 / 65535.0};
+ *     status = lensprof_response_set_table(&profile.response[0], knees, 9);
+ *     options.source_sample = LENSPROF_SAMPLE_U16, options.levels = &levels;
+ *     options.target_sample = LENSPROF_SAMPLE_U16, options.output = LENSPROF_ENCODING_LINEAR; // 65535 is white
+ */
 #ifndef LENSPROF_FIXED_H
 #define LENSPROF_FIXED_H
 

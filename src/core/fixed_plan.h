@@ -67,7 +67,9 @@ static inline int lp_fixed_is_8_bit(const lensprof_fixed_plan *plan) {
     return plan->sample == LENSPROF_SAMPLE_U8 && lp_fixed_target(plan) == LENSPROF_SAMPLE_U8;
 }
 
-static inline uint32_t lp_fixed_span_shift(const lensprof_fixed_plan *plan) { return lp_fixed_is_8_bit(plan) ? 14 : 22; }
+static inline uint32_t lp_fixed_span_shift(const lensprof_fixed_plan *plan) {
+    return lp_fixed_is_8_bit(plan) ? 14 : 22;
+}
 
 /* Whether codes pass through lp_fixed_curve. */
 static inline int lp_fixed_is_wide(const lensprof_fixed_plan *plan) {

@@ -63,6 +63,20 @@ class Fixed(unittest.TestCase):
         self.assertLessEqual(np.abs(result - wanted).max(), 0.51)
         self.assertLessEqual(np.abs(lp.Plan(fields).apply(array).astype(int) - result).max(), 1)
 
+    def test_companded_samples_of_12_bit(self):
+        levels = lp.Levels(black=[240 / 65535] * 3, white=4095 / 65535)
+        knees = lp.Response.from_table([0.0, 0.5, 0.7, 0.8, 0.875, 0.925, 0.95, 0.975, 1.0])
+        array = np.random.default_rng(4).integers(200, 4096, (30, 40)).astype(np.uint16)
+        for target in (lp.SampleType.U16, lp.SampleType.U8):
+            fields = options(source_sample=lp.SampleType.U16, target_sample=target, levels=levels, response=knees,
+                             source_layout=lp.Layout.RGGB, output=lp.Encoding.LINEAR)
+            plan, wanted = lp.FixedPlan(fields), lp.Plan(fields).apply(array)
+            result = plan.apply(array)
+            self.assertEqual(result.dtype, wanted.dtype)
+            self.assertLessEqual(np.abs(result.astype(int) - wanted).max(), 1)
+            again = lp.FixedPlan.open(plan.data, lp.Layout.RGGB).apply(array, np.empty_like(result))
+            np.testing.assert_array_equal(again, result)
+
     def test_what_is_refused(self):
         plan = lp.FixedPlan(options())
         self.assertLess(len(plan.data), 5000)

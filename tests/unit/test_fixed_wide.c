@@ -36,15 +36,24 @@ static void from_8_to_16(fixture *f, int n, uint64_t *random) {
     make_wide_case(f, LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, n & 1, random);
 }
 
-/* The curve of a sensor that compands: slopes of 64 in the dark, 1/64 at white, straight lines between knees. */
+/* The curve of a sensor that compands: straight lines between knees, with a slope of 64 in the dark and of 1/64 near
+ * white. */
 static void companding_response(lensprof_response *r, uint64_t *random) {
-    double table[LENSPROF_RESPONSE_SAMPLES] = {0.0}, slope = 64.0;
-    for (int j = 1; j < LENSPROF_RESPONSE_SAMPLES; j++) {
-        table[j] = table[j - 1] + slope / (LENSPROF_RESPONSE_SAMPLES - 1);
-        if (slope > 1.0 / 64.0 && lp_random(random) < (table[j] > 0.5 ? 0.2 : 0.08)) slope *= 0.5;
+    enum {
+        LAST = LENSPROF_RESPONSE_SAMPLES - 1
+    };
+    const int dark = 2 + (int)(8.0 * lp_random(random)), bright = 200 + (int)(800.0 * lp_random(random));
+    double table[LAST + 1] = {0.0}, weight[LAST + 1], slope = 1.0, sum = 0.0;
+    for (int j = dark + 1; j <= bright; j++) {
+        if (lp_random(random) < 0.03) slope *= 0.2 + 0.7 * lp_random(random);
+        sum += weight[j] = slope;
     }
-    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) table[j] /= table[LENSPROF_RESPONSE_SAMPLES - 1];
-    assert_ok(lensprof_response_set_table(r, table, LENSPROF_RESPONSE_SAMPLES));
+    const double rest = LAST - 64.0 * dark - (LAST - bright) / 64.0;
+    for (int j = 1; j <= LAST; j++) {
+        const double rise = j <= dark ? 64.0 : j > bright ? 1.0 / 64.0 : rest * weight[j] / sum;
+        table[j] = table[j - 1] + rise / LAST;
+    }
+    assert_ok(lensprof_response_set_table(r, table, LAST + 1));
 }
 
 /* Parts of it are flat, and so may be both ends. */
@@ -63,7 +72,8 @@ static void companded(fixture *f, int n, uint64_t *random) {
     const uint32_t bits = 10 + 2 * (uint32_t)(4 * lp_random(random)), most = (1u << bits) - 1;
     const double black = most / 32 / 65535.0;
     for (int c = 0; c < 3; c++) companding_response(&f->m.response[c], random);
-    o->input = LENSPROF_ENCODING_RESPONSE, o->output = n % 2 ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
+    o->input = n % 4 == 2 ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
+    o->output = n % 2 ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
     o->output_response = NULL, o->output_responses = 0;
     f->m.levels[0] = (lensprof_levels){{black, black, black}, most / 65535.0};
     o->levels = &f->m.levels[0];
@@ -81,12 +91,12 @@ static void with_flat_parts(fixture *f, int n, uint64_t *random) {
     make_plan(f);
 }
 
-/* gamma from 1 to 3, where the logarithm of light is that of the code times gamma. */
+/* gamma from 0.2 to 5, where the logarithm of light is that of the code times gamma. */
 static void with_gamma(fixture *f, int n, uint64_t *random) {
     from_16_to_16(f, n, random);
     for (int c = 0; c < 3; c++) {
-        assert_ok(lensprof_response_set_gamma(&f->m.response[c], 1.0 + 2.0 * lp_random(random)));
-        assert_ok(lensprof_response_set_gamma(&f->m.output[c], 1.0 + 2.0 * lp_random(random)));
+        assert_ok(lensprof_response_set_gamma(&f->m.response[c], pow(5.0, 2.0 * lp_random(random) - 1.0)));
+        assert_ok(lensprof_response_set_gamma(&f->m.output[c], pow(5.0, 2.0 * lp_random(random) - 1.0)));
     }
     make_plan(f);
 }

@@ -172,26 +172,27 @@ class FixedPlan:
               "these options cannot be applied in integers", error)
         self.data = self._memory.tobytes()[:size]
         self._layout = options.source_layout
+        self._target_dtype: Any = _arrays.sample_dtype(options.target_sample)
 
     @classmethod
     def open(cls, data: bytes, layout: Layout) -> "FixedPlan":
-        """The plan from its `data`, for pictures of the given layout."""
+        """The plan from its `data`, for pictures of the given layout. If it is between uint8 and uint16, give `out`."""
         plan = cls.__new__(cls)
         plan._memory = np.frombuffer(bytearray(data) + bytes(-len(data) % 4), dtype=np.uint32)
         plan._plan = POINTER(_abi.FixedPlan)()
         check(lib.lensprof_fixed_plan_open(plan._memory.ctypes.data, len(data), byref(plan._plan)),
               "not the data of a FixedPlan of this version, or damaged; make it again")
-        plan.data, plan._layout = bytes(data), Layout(layout)
+        plan.data, plan._layout, plan._target_dtype = bytes(data), Layout(layout), None
         return plan
 
     def apply(self, source: Pixels, out: Optional[Pixels] = None, *, x0: int = 0, y0: int = 0) -> Pixels:
         """As Plan.apply."""
         view = _arrays.image(source, self._layout, what="source")
-        out = np.empty_like(source) if out is None else out
+        out = np.empty(source.shape, dtype=self._target_dtype or source.dtype) if out is None else out
         target = _arrays.target(out, self._layout)
         check(lib.lensprof_fixed_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
-              "the plan's sample type, the same size, lie in the frame, and be the same array or apart")
+              "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
         return out
 
     def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
