@@ -17,7 +17,7 @@ aarch64-linux-gnu-objdump -d "$work/row_neon.o" | grep -c 'v[0-9]*\.4s' | sed 's
 # Every instruction is interpreted, so only a third of the kernels' rows is tested, or all of them if LENSPROF_PERCENT
 # is 100.
 export LENSPROF_PERCENT="${LENSPROF_PERCENT:-33}"
-for test in test_kernels test_apply test_fixed test_packed test_sensor; do
+for test in test_kernels test_apply test_fixed test_fixed_wide test_packed test_sensor; do
     $cc "${flags[@]}" -static "tests/unit/$test.c" "$work"/*.o -lm -o "$work/$test"
     qemu-aarch64 "$work/$test"
 done
