@@ -87,45 +87,82 @@ lensprof_status lp_sensor_source_take(lp_sensor_source *s, const lensprof_apply_
 
 /* ---- plans ---- */
 
-/* The gain at a node, from light to light, of the nodes as the plan counts them. */
-static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row) {
+static double pixel_at(const lp_sensor_source *s, int axis, double node) {
+    const double last = (axis ? s->options.frame_height : s->options.frame_width) - 1.0;
+    return last * node / ((axis ? s->readout.rows : s->readout.columns) - 1.0);
+}
+
+/* By how much a straight line between the gain at a node and that of its neighbours is above the gain in the middle;
+ * mean of the neighbours on an axis. */
+static double excess_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, int axis) {
+    const uint32_t at = axis ? row : column, nodes = axis ? s->readout.rows : s->readout.columns;
+    const double x = pixel_at(s, 0, column), y = pixel_at(s, 1, row), gain = lp_sensor_gain(s, plane, x, y);
+    double excess = 0.0;
+    for (int side = -1; side <= 1; side += 2) {
+        if (side < 0 ? at == 0 : at + 1 == nodes) continue;
+        const double next = pixel_at(s, axis, at + side), middle = pixel_at(s, axis, at + 0.5 * side);
+        const double there = lp_sensor_gain(s, plane, axis ? x : next, axis ? next : y);
+        excess += 0.5 * (gain + there) - lp_sensor_gain(s, plane, axis ? x : middle, axis ? middle : y);
+    }
+    return at == 0 || at + 1 == nodes ? excess : 0.5 * excess;
+}
+
+/* The gain of light at a node, of the nodes as the plan counts them. Half of the excess is subtracted, so that a cell
+ * is too bright in its middle by what it is too dark at its corners; but not below `least`, the smallest gain, at which
+ * highlights are clipped. */
+static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, double least) {
     const lensprof_readout *r = &s->readout;
     if (lp_readout_is_flipped(r, 0)) column = r->columns - 1 - column;
     if (lp_readout_is_flipped(r, 1)) row = r->rows - 1 - row;
-    const double x = (s->options.frame_width - 1.0) * column / (r->columns - 1.0);
-    const double y = (s->options.frame_height - 1.0) * row / (r->rows - 1.0);
-    const double gain = lp_sensor_gain(s, plane, x, y);
+    const double exact = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
+    const double excess = excess_at(s, plane, column, row, 0) + excess_at(s, plane, column, row, 1);
+    const double gain = fmax(exact - 0.5 * excess, least);
     return r->gains ? gain * (double)r->gains[(plane * r->rows + row) * r->columns + column] : gain;
 }
 
-/* Nodes in units of codes to codes. */
-static lensprof_status prepare_nodes(lensprof_sensor_plan *plan, const lp_sensor_source *s, double largest) {
-    uint32_t *node = (uint32_t *)(void *)(plan + 1);
-    uint32_t shift = LP_SENSOR_LARGEST_SHIFT;
+static double least_gain(const lp_sensor_source *s, uint32_t plane) {
+    double least = lp_sensor_gain(s, plane, 0.0, 0.0);
+    for (uint32_t row = 0; row < s->readout.rows; row++)
+        for (uint32_t column = 0; column < s->readout.columns; column++) {
+            const double gain = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
+            if (gain < least) least = gain;
+        }
+    return least;
+}
+
+/* Writes the gains of codes as floats. Returns the largest of them; *least receives the smallest gain of light, at most
+ * 1. */
+static double write_gains(lensprof_sensor_plan *plan, const lp_sensor_source *s, double *least) {
+    float *node = (float *)(void *)(plan + 1);
+    double largest = 0.0;
+    *least = 1.0;
+    for (uint32_t p = 0; p < plan->grid.planes; p++) {
+        const double units = lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p);
+        const double of_plane = least_gain(s, p);
+        for (uint32_t row = 0; row < plan->grid.rows; row++)
+            for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
+                const double gain = node_at(s, p, column, row, of_plane);
+                if (gain < *least) *least = gain;
+                largest = fmax(largest, gain * units);
+                *node = (float)(gain * units);
+            }
+    }
+    return largest;
+}
+
+/* Rounds the gains to integers, in the finest unit in which the largest fits. */
+static lensprof_status round_gains(lensprof_sensor_plan *plan, double largest) {
+    uint32_t shift = LP_SENSOR_LARGEST_SHIFT, *node = (uint32_t *)(void *)(plan + 1);
     while (largest * (double)(1u << shift) > LP_SENSOR_LARGEST_NODE && shift > 0) shift--;
     if (shift < LP_SENSOR_LEAST_SHIFT) return LENSPROF_ERROR_UNSUPPORTED;
     plan->grid.shift = (uint8_t)shift;
-    for (uint32_t p = 0; p < plan->grid.planes; p++) {
-        const double scale = lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p) * (double)(1u << shift);
-        for (uint32_t row = 0; row < plan->grid.rows; row++)
-            for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
-                *node = (uint32_t)floor(node_at(s, p, column, row) * scale + 0.5);
-                if (!*node) *node = 1;
-            }
+    for (uint32_t i = 0; i < plan->grid.planes * lp_sensor_grid_nodes(&plan->grid); i++) {
+        float gain;
+        memcpy(&gain, &node[i], sizeof gain);
+        const double rounded = floor((double)gain * (double)(1u << shift) + 0.5);
+        node[i] = rounded < 1.0 ? 1 : rounded > LP_SENSOR_LARGEST_NODE ? LP_SENSOR_LARGEST_NODE : (uint32_t)rounded;
     }
     return LENSPROF_OK;
-}
-
-/* The smallest gain of light, and the largest of codes, over all nodes. */
-static void find_extremes(const lensprof_sensor_plan *plan, const lp_sensor_source *s, double *least, double *largest) {
-    *least = 1.0, *largest = 0.0;
-    for (uint32_t p = 0; p < plan->grid.planes; p++)
-        for (uint32_t row = 0; row < plan->grid.rows; row++)
-            for (uint32_t column = 0; column < plan->grid.columns; column++) {
-                const double gain = node_at(s, p, column, row);
-                if (gain < *least) *least = gain;
-                *largest = fmax(*largest, gain * lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p));
-            }
 }
 
 static int32_t level_of(double code) { return (int32_t)floor(code * (1 << LP_SENSOR_LEVEL_SHIFT) + 0.5); }
@@ -160,12 +197,12 @@ lensprof_status lensprof_sensor_plan_init(void *memory, size_t size, const lensp
     const size_t bytes = bytes_of_nodes(lp_readout_nodes(&source.readout));
     if (size < bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
     lensprof_sensor_plan *plan = memory;
-    double least, largest;
+    double least;
     memset(plan, 0, sizeof *plan);
     plan->magic = LP_SENSOR_MAGIC, plan->bytes = (uint32_t)bytes;
     plan->grid = lp_readout_grid(&source.readout, source.options.frame_width, source.options.frame_height);
-    find_extremes(plan, &source, &least, &largest);
-    if (prepare_nodes(plan, &source, largest) != LENSPROF_OK)
+    const double largest = write_gains(plan, &source, &least);
+    if (round_gains(plan, largest) != LENSPROF_OK)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "gains of 4096 or more");
     prepare_levels(plan, &source, least);
     plan->check = lp_sensor_check(plan);

@@ -22,6 +22,7 @@ typedef struct sensor_case {
     uint16_t in[SENSOR_ROWS][SENSOR_WIDTH], out[SENSOR_ROWS][SENSOR_WIDTH];
     uint32_t memory[SENSOR_WORDS];
     const lensprof_sensor_plan *plan;
+    double node_gain[4][33][33]; /* of light: plane, row, column */
 } sensor_case;
 
 static const char *const sensor_colors[] = {
@@ -35,42 +36,6 @@ static void random_sensor_levels(lensprof_sensor_levels *levels, uint64_t *rando
     const double black = lp_random(random) < 0.2 ? 0.0 : floor(levels->white / 8.0 * lp_random(random));
     const int is_one = lp_random(random) < 0.5;
     for (int p = 0; p < 4; p++) levels->black[p] = is_one ? black : black + 40.0 * (lp_random(random) - 0.5);
-}
-
-static void make_sensor_plan(sensor_case *c) {
-    assert_in_range(lensprof_sensor_plan_bytes(&c->readout), 1, sizeof c->memory);
-    assert_ok(lensprof_sensor_plan_init(c->memory, sizeof c->memory, &c->m.options, &c->readout, &c->plan, NULL));
-}
-
-/* A random sensor, and random samples of a tile somewhere in what it reads. */
-static inline void make_sensor(sensor_case *c, uint64_t *random) {
-    lensprof_apply_options *o = &c->m.options;
-    lensprof_readout *r = &c->readout;
-    random_model(&c->m, random);
-    o->input = o->output = LENSPROF_ENCODING_LINEAR;
-    o->image_circle = NULL;
-    o->frame_width = 600 + sensor_below(4000, random), o->frame_height = 600 + sensor_below(3000, random);
-    lensprof_readout_init(r);
-    c->colors = sensor_colors[sensor_below(10, random)];
-    assert_ok(lensprof_readout_set_mosaic(r, c->colors));
-    r->step = lp_random(random) < 0.6 ? 1 : 1 + sensor_below(3, random);
-    r->flip = sensor_below(4, random);
-    r->x = sensor_below(20, random), r->y = sensor_below(20, random);
-    r->width = (o->frame_width - r->x) / r->step - sensor_below(20, random);
-    r->height = (o->frame_height - r->y) / r->step - sensor_below(20, random);
-    r->columns = 3 + sensor_below(31, random), r->rows = 3 + sensor_below(31, random);
-    if (lp_random(random) < 0.3) {
-        for (uint32_t i = 0; i < 4 * r->columns * r->rows; i++) c->gains[i] = (float)(1.0 + lp_random(random));
-        r->gains = c->gains;
-    }
-    for (int end = 0; end < 2; end++) random_sensor_levels(&c->levels[end], random);
-    r->levels = lp_random(random) < 0.8 ? &c->levels[0] : NULL;
-    r->output_levels = lp_random(random) < 0.7 ? NULL : &c->levels[1];
-    c->x0 = sensor_below(r->width - SENSOR_WIDTH, random), c->y0 = sensor_below(r->height - SENSOR_ROWS, random);
-    const double white = r->levels ? r->levels->white : 65535.0;
-    for (uint32_t y = 0; y < SENSOR_ROWS; y++)
-        for (uint32_t x = 0; x < SENSOR_WIDTH; x++) c->in[y][x] = (uint16_t)(white * lp_random(random));
-    make_sensor_plan(c);
 }
 
 /* The letter of a sample, by the text that names the mosaic. */
@@ -104,14 +69,40 @@ static double model_gain(const sensor_case *c, char letter, double x, double y) 
     return o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
 }
 
-/* Gain at a node of the grid, with the caller's own. */
-static double node_gain(const sensor_case *c, char letter, uint32_t column, uint32_t row) {
+/* The gain at a place between the nodes, in nodes. */
+static double gain_between(const sensor_case *c, char letter, double column, double row) {
+    return model_gain(c, letter, (c->m.options.frame_width - 1.0) * column / (c->readout.columns - 1.0),
+                      (c->m.options.frame_height - 1.0) * row / (c->readout.rows - 1.0));
+}
+
+/* Half of the mean excess of straight lines over the gain in their middles, on one axis. */
+static double half_excess(const sensor_case *c, char letter, uint32_t column, uint32_t row, int axis) {
+    const uint32_t at = axis ? row : column, last = (axis ? c->readout.rows : c->readout.columns) - 1;
+    double sum = 0.0, count = 0.0;
+    for (int side = -1; side <= 1; side += 2) {
+        if ((side < 0 && at == 0) || (side > 0 && at == last)) continue;
+        const double du = axis ? 0.0 : side, dv = axis ? side : 0.0;
+        sum += (gain_between(c, letter, column, row) + gain_between(c, letter, column + du, row + dv)) / 2
+               - gain_between(c, letter, column + du / 2, row + dv / 2);
+        count += 1.0;
+    }
+    return sum / count / 2;
+}
+
+/* Gains at the nodes of the grid, with the caller's own. The excess of their neighbours is subtracted, not below the
+ * smallest gain of all nodes. */
+static void find_node_gains(sensor_case *c, char letter) {
     const lensprof_readout *r = &c->readout;
-    const lensprof_apply_options *o = &c->m.options;
-    const double x = (o->frame_width - 1.0) * column / (r->columns - 1.0);
-    const double y = (o->frame_height - 1.0) * row / (r->rows - 1.0);
-    const double own = r->gains ? (double)r->gains[(plane_of(c, letter) * r->rows + row) * r->columns + column] : 1.0;
-    return own * model_gain(c, letter, x, y);
+    const uint32_t plane = plane_of(c, letter);
+    double least = gain_between(c, letter, 0, 0);
+    for (uint32_t j = 0; j < r->rows; j++)
+        for (uint32_t i = 0; i < r->columns; i++) least = fmin(least, gain_between(c, letter, i, j));
+    for (uint32_t j = 0; j < r->rows; j++)
+        for (uint32_t i = 0; i < r->columns; i++) {
+            const double excess = half_excess(c, letter, i, j, 0) + half_excess(c, letter, i, j, 1);
+            const double own = r->gains ? (double)r->gains[(plane * r->rows + j) * r->columns + i] : 1.0;
+            c->node_gain[plane][j][i] = own * fmax(least, gain_between(c, letter, i, j) - excess);
+        }
 }
 
 /* The first or second pixel of the frame that a sample of an axis covers, if it is read backwards. */
@@ -131,8 +122,46 @@ static double grid_gain(const sensor_case *c, char letter, uint32_t x, uint32_t 
     if (i > r->columns - 2) i = r->columns - 2;
     if (j > r->rows - 2) j = r->rows - 2;
     const double s = u - i, t = v - j;
-    return (1 - t) * ((1 - s) * node_gain(c, letter, i, j) + s * node_gain(c, letter, i + 1, j))
-           + t * ((1 - s) * node_gain(c, letter, i, j + 1) + s * node_gain(c, letter, i + 1, j + 1));
+    const double *above = &c->node_gain[plane_of(c, letter)][j][i], *below = above + 33;
+    return (1 - t) * ((1 - s) * above[0] + s * above[1]) + t * ((1 - s) * below[0] + s * below[1]);
+}
+
+static void make_sensor_plan(sensor_case *c) {
+    assert_in_range(lensprof_sensor_plan_bytes(&c->readout), 1, sizeof c->memory);
+    assert_ok(lensprof_sensor_plan_init(c->memory, sizeof c->memory, &c->m.options, &c->readout, &c->plan, NULL));
+    for (const char *letter = "RGgBIW"; *letter; letter++)
+        if (strchr(c->colors, *letter)) find_node_gains(c, *letter);
+}
+
+/* A random sensor, and random samples of a tile somewhere in what it reads. */
+static inline void make_sensor(sensor_case *c, uint64_t *random) {
+    lensprof_apply_options *o = &c->m.options;
+    lensprof_readout *r = &c->readout;
+    random_model(&c->m, random);
+    o->input = o->output = LENSPROF_ENCODING_LINEAR;
+    o->image_circle = NULL;
+    o->frame_width = 600 + sensor_below(4000, random), o->frame_height = 600 + sensor_below(3000, random);
+    lensprof_readout_init(r);
+    c->colors = sensor_colors[sensor_below(10, random)];
+    assert_ok(lensprof_readout_set_mosaic(r, c->colors));
+    r->step = lp_random(random) < 0.6 ? 1 : 1 + sensor_below(3, random);
+    r->flip = sensor_below(4, random);
+    r->x = sensor_below(20, random), r->y = sensor_below(20, random);
+    r->width = (o->frame_width - r->x) / r->step - sensor_below(20, random);
+    r->height = (o->frame_height - r->y) / r->step - sensor_below(20, random);
+    r->columns = 3 + sensor_below(31, random), r->rows = 3 + sensor_below(31, random);
+    if (lp_random(random) < 0.3) {
+        for (uint32_t i = 0; i < 4 * r->columns * r->rows; i++) c->gains[i] = (float)(1.0 + lp_random(random));
+        r->gains = c->gains;
+    }
+    for (int end = 0; end < 2; end++) random_sensor_levels(&c->levels[end], random);
+    r->levels = lp_random(random) < 0.8 ? &c->levels[0] : NULL;
+    r->output_levels = lp_random(random) < 0.7 ? NULL : &c->levels[1];
+    c->x0 = sensor_below(r->width - SENSOR_WIDTH, random), c->y0 = sensor_below(r->height - SENSOR_ROWS, random);
+    const double white = r->levels ? r->levels->white : 65535.0;
+    for (uint32_t y = 0; y < SENSOR_ROWS; y++)
+        for (uint32_t x = 0; x < SENSOR_WIDTH; x++) c->in[y][x] = (uint16_t)(white * lp_random(random));
+    make_sensor_plan(c);
 }
 
 /* Levels in codes of the input or output. */
