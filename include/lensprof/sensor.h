@@ -1,25 +1,21 @@
 /* lensprof/sensor.h - samples as a raw sensor delivers them, corrected in integers by a grid of gains.
  *
- * Example: a sensor of 4056 x 3040 pixels and 10 bits that bins 2 x 2 and reads its rows from right to left.
+ * Example: packed rows of 10 bits of a sensor that bins 2 x 2, corrected in place.
  *
  *     static uint32_t memory[1024];
+ *     static uint8_t sensor[480 * 640 * 5 / 4];
+ *     const lensprof_packed_target tile = {sensor, 640 * 5 / 4, 640, 480};
  *     const lensprof_sensor_plan *plan;
- *     const lensprof_sensor_levels levels = {{64, 64, 64, 64}, 1023};
  *     lensprof_apply_options options;
  *     lensprof_readout readout;
- *     lensprof_apply_options_init(&options);
- *     options.frame_width = 4056, options.frame_height = 3040;
- *     lensprof_readout_init(&readout);
+ *     lensprof_apply_options_init(&options), lensprof_readout_init(&readout);
+ *     options.frame_width = 1280, options.frame_height = 960, readout.step = 2;
  *     status = lensprof_readout_set_mosaic(&readout, "GRBG");
- *     readout.width = 2028, readout.height = 1520, readout.step = 2, readout.flip = LENSPROF_FLIP_HORIZONTAL;
- *     readout.levels = &levels;
  *     if (status == LENSPROF_OK) status = lensprof_apply_options_set_profile(&options, &profile);
  *     if (status == LENSPROF_OK)
  *         status = lensprof_sensor_plan_init(memory, sizeof memory, &options, &readout, &plan, &error);
- *     for (uint32_t y = 0; y < 1520 && status == LENSPROF_OK; y++) { // rows as they arrive, in place
- *         const lensprof_packed_target row = {next_row(), 2028 * 5 / 4, 2028, 1};
- *         status = lensprof_sensor_apply_packed(plan, LENSPROF_PACKING_RAW10, NULL, &row, 0, y);
- *     }
+ *     if (status == LENSPROF_OK)
+ *         status = lensprof_sensor_apply_packed(plan, LENSPROF_PACKING_RAW10, NULL, &tile, 0, 0);
  *
  *   B' = black' + (B - black) G(x, y)        clipped to 0 and white'
  *

@@ -1,5 +1,5 @@
 /* count_samples - instructions per sample of a row of 12 megapixels, counted by the emulator's clock: the library's
- * ways beside a plain loop and a copy. Each line: name, instructions per 100 samples. */
+ * ways compared with a plain loop and a copy. Each line: name, instructions per 100 samples. */
 #include <string.h>
 
 #include <lensprof/sensor.h>
