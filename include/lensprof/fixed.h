@@ -19,13 +19,14 @@
  *   log2 g(B) + log2(e' w' / (e w)) - log2 M   ->   the grey value with that light        apply.h, correct
  *
  * A plan is prepared with floating point (in software: some 100 ms on a Cortex-M0+ at 48 MHz), or on another machine
- * and copied, as it contains no address. Processing pixels then needs no floating point, no heap, no I/O, and at most
- * 512 bytes of stack; lensprof_fixed_plan_init takes up to 2 KiB. Formats: U8 and U16 in layouts GREY to BGRA and
- * mosaics, from either type to either, encoded or linear. Black and white levels count in 1 / 256 of a code. A plan
- * takes about 200 bytes. From U8 to U8 it takes 2 KiB more per response, unless it is linear and has levels; otherwise
- * 4 KiB more for each response with samples (TABLE, EMOR) of the input, and of the output unless that is encoded in the
- * same way, and 20 bytes for each that is linear or GAMMA. Gain grids, image circles, dither and planes are
- * UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different tiles.
+ * and copied, as it contains no address. Processing pixels then needs no floating point, no heap, no I/O, and at
+ * most 512 bytes of stack; lensprof_fixed_plan_init takes up to 2 KiB. Formats: U8 and U16 in layouts GREY to BGRA
+ * and mosaics, from either type to either, encoded or linear. Black and white levels count in 1 / 256 of a code. A
+ * plan takes about 250 bytes, and 4 per node of a gain grid (in frames of up to 65535 px a side). From U8 to U8 it
+ * takes 2 KiB more per response, unless it is linear and has levels; otherwise 4 KiB more for each response with
+ * samples (TABLE, EMOR) of the input, and of the output unless that is encoded in the same way, and 20 bytes for
+ * each that is linear or GAMMA. Image circles, dither and planes are UNSUPPORTED. Threads: a plan is immutable after
+ * init and may be used by several threads on different tiles.
  *
  * Companded samples of a sensor, here of 12 bit, are a response: a table in, linear out.
  *

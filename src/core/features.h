@@ -31,4 +31,11 @@
 #define LP_HAS_WIDE_CURVES 1
 #endif
 
+/* -DLENSPROF_NO_FIXED_GRID leaves out gain grids in integers (fixed.h); plans that have one are then CORRUPT. */
+#ifdef LENSPROF_NO_FIXED_GRID
+#define LP_HAS_FIXED_GRID 0
+#else
+#define LP_HAS_FIXED_GRID 1
+#endif
+
 #endif

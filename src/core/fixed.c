@@ -45,10 +45,35 @@ static uint64_t r2_of(const lensprof_fixed_plan *plan, uint32_t x, uint32_t y) {
 
 static int32_t times(int32_t a, uint32_t t) { return (int32_t)((int64_t)a * t >> 31); }
 
-/* log2 of the falloff M of a channel at t. */
-static int32_t falloff_at(const lensprof_fixed_plan *plan, uint32_t channel, uint32_t t) {
+/* Where a pixel is. */
+typedef struct pixel_place {
+    uint32_t t;                  /* r^2, as the falloff counts it */
+    lp_sensor_place column, row; /* in the gain grid, if there is one */
+} pixel_place;
+
+#if LP_HAS_FIXED_GRID
+/* The falloff times the grid, by strength. */
+static int32_t with_grid(const lensprof_fixed_plan *plan, uint32_t channel, const pixel_place *at, int32_t m) {
+    const lp_fixed_grid *grid = &plan->grid;
+    const uint32_t columns = grid->columns, plane = grid->channels == 3 ? channel : 0;
+    const int32_t *nodes = (const int32_t *)(const void *)plan + plan->bytes / 4 - lp_fixed_nodes(plan);
+    const int32_t *above = nodes + (plane * grid->rows + at->row.node) * columns + at->column.node;
+    const uint32_t across = at->column.rest * grid->axis[0].per_whole, down = at->row.rest * grid->axis[1].per_whole;
+    const int32_t attenuation = lp_sensor_between(lp_sensor_between(above[0], above[1], across),
+                                                  lp_sensor_between(above[columns], above[columns + 1], across), down);
+    const int32_t one = 1 << plan->falloff_shift, product = (int32_t)((int64_t)m * attenuation >> grid->shift);
+    return one + (int32_t)((int64_t)(product - one) * (int32_t)grid->strength >> LP_STRENGTH_SHIFT);
+}
+#endif
+
+/* log2 of the falloff M of a channel. */
+static int32_t falloff_at(const lensprof_fixed_plan *plan, uint32_t channel, const pixel_place *at) {
     const int32_t *k = plan->k[channel];
+    const uint32_t t = at->t;
     int32_t m = (1 << plan->falloff_shift) + times(k[0] + times(k[1] + times(k[2], t), t), t);
+#if LP_HAS_FIXED_GRID
+    if (plan->grid.columns) m = with_grid(plan, channel, at, m);
+#endif
     if (m < plan->least) m = plan->least;
     return log2_of((uint32_t)m) - (int32_t)(plan->falloff_shift << LP_LOG_SHIFT);
 }
@@ -58,12 +83,12 @@ static int32_t gain_of(const lensprof_fixed_plan *plan, uint32_t channel, int32_
     return plan->simulate ? -gain : gain;
 }
 
-/* log2 of the gains of the channels at t. */
-static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gain) {
-    int32_t falloff = falloff_at(plan, 0, t);
+/* log2 of the gains of the channels. */
+static void find_gains(const lensprof_fixed_plan *plan, const pixel_place *at, int32_t *gain) {
+    int32_t falloff = falloff_at(plan, 0, at);
     gain[0] = gain_of(plan, 0, falloff);
     for (uint32_t c = 1; c < LP_CHANNELS; c++) {
-        if (c < plan->falloffs) falloff = falloff_at(plan, c, t);
+        if (c < plan->falloffs) falloff = falloff_at(plan, c, at);
         gain[c] = plan->gains == 3 ? gain_of(plan, c, falloff) : gain[0];
     }
 }
@@ -263,16 +288,17 @@ static uint32_t grey_of(const lensprof_fixed_plan *plan, uint32_t code, uint32_t
 /* ---- rows ---- */
 
 /* One sample per pixel: grey, or a mosaic. */
-static void do_single(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t channel, uint32_t t) {
-    const int32_t falloff = falloff_at(plan, plan->falloffs == 3 ? channel : 0, t);
+static void do_single(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t channel,
+                      const pixel_place *at) {
+    const int32_t falloff = falloff_at(plan, plan->falloffs == 3 ? channel : 0, at);
     put_sample(plan, get_code(plan, from), channel, gain_of(plan, channel, falloff), to);
 }
 
-static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t t) {
+static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, const pixel_place *at) {
     const uint32_t read = bytes_of(plan->sample), written = bytes_of(lp_fixed_target(plan));
     uint32_t code[4], value[LP_CHANNELS];
     int32_t gain[LP_CHANNELS];
-    find_gains(plan, t, gain);
+    find_gains(plan, at, gain);
     for (uint32_t n = 0; n < plan->samples; n++) {
         const uint32_t channel = plan->channel_of_sample[n];
         code[n] = get_code(plan, from + n * read);
@@ -296,14 +322,23 @@ static void do_row(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t
     uint64_t r2 = r2_of(plan, x, y);
     int64_t rise = 2 * ((int64_t)(int32_t)(x << LP_CENTER_SHIFT) - plan->center[0]) * (1 << LP_CENTER_SHIFT)
                    + (1 << 2 * LP_CENTER_SHIFT);
+    pixel_place at;
+#if LP_HAS_FIXED_GRID
+    if (plan->grid.columns) {
+        at.column = lp_sensor_place_at(&plan->grid.axis[0], plan->grid.columns, x);
+        at.row = lp_sensor_place_at(&plan->grid.axis[1], plan->grid.rows, y);
+    }
+#endif
     for (uint32_t i = 0; i < count; i++, from += read, to += written) {
-        const uint32_t t = (uint32_t)(r2 << plan->reach_shift >> 32);
+        at.t = (uint32_t)(r2 << plan->reach_shift >> 32);
         if (plan->samples == 1)
-            do_single(plan, from, to, plan->site[y & 1][(x + i) & 1], t);
+            do_single(plan, from, to, plan->site[y & 1][(x + i) & 1], &at);
         else
-            do_pixel(plan, from, to, t);
+            do_pixel(plan, from, to, &at);
         r2 += (uint64_t)rise;
         rise += 2 << 2 * LP_CENTER_SHIFT;
+        if (LP_HAS_FIXED_GRID && plan->grid.columns)
+            lp_sensor_next(&plan->grid.axis[0], plan->grid.columns, &at.column);
     }
 }
 

@@ -43,14 +43,46 @@ static int is_reach_sound(const lensprof_fixed_plan *plan) {
 
 static uint32_t size_of(int32_t value) { return value < 0 ? 0u - (uint32_t)value : (uint32_t)value; }
 
-/* Sums of the falloff's terms fit into 31 bits, and so do those of gains and light. */
+static int is_side(uint32_t nodes) { return nodes >= 2 && nodes <= LENSPROF_GRID_SIDE; }
+
+/* The largest node, or 1 in the grid's units if there is no grid; 0 if the grid is wrong. */
+static uint32_t largest_node(const lensprof_fixed_plan *plan) {
+    const lp_fixed_grid *grid = &plan->grid;
+    const uint32_t sides[2] = {plan->frame_width, plan->frame_height}, nodes[2] = {grid->columns, grid->rows};
+    if (!grid->columns) return grid->rows || grid->channels ? 0 : 1u << grid->shift;
+    if (!LP_HAS_FIXED_GRID || !is_side(grid->columns) || !is_side(grid->rows) || !is_one_or_three(grid->channels))
+        return 0;
+    if (grid->strength > 1u << LP_STRENGTH_SHIFT || sides[0] > LP_SENSOR_LARGEST_SIDE
+        || sides[1] > LP_SENSOR_LARGEST_SIDE)
+        return 0;
+    for (int d = 0; d < 2; d++) {
+        const lp_sensor_axis axis = lp_fixed_grid_axis(sides[d], nodes[d]);
+        if (memcmp(&axis, &grid->axis[d], sizeof axis)) return 0;
+    }
+    const uint32_t count = lp_fixed_nodes(plan);
+    if (plan->bytes < sizeof *plan + count * 4) return 0;
+    const uint32_t *node = (const uint32_t *)(const void *)plan + plan->bytes / 4 - count;
+    uint32_t largest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!node[i] || node[i] > LP_SENSOR_LARGEST_NODE) return 0;
+        if (node[i] > largest) largest = node[i];
+    }
+    return largest;
+}
+
+/* Sums of the falloff's terms fit into 31 bits, also times the grid, and so do those of gains and light. */
 static int are_gains_sound(const lensprof_fixed_plan *plan) {
+    if (plan->grid.shift > LP_SENSOR_LARGEST_SHIFT) return 0;
+    const uint32_t node = largest_node(plan);
+    if (!node) return 0;
     if (!is_one_or_three(plan->falloffs) || !is_one_or_three(plan->gains)) return 0;
     if (plan->falloff_shift > 30 || plan->least <= 0 || plan->least > 1 << plan->falloff_shift) return 0;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
         uint64_t sum = (1u << plan->falloff_shift) + 3u; /* each product rounds down */
         for (int n = 0; n < 3; n++) sum += size_of(plan->k[c][n]);
-        if (sum > INT32_MAX || size_of(plan->factor[c]) > LARGEST_FACTOR) return 0;
+        if (sum > INT32_MAX || (sum * node >> plan->grid.shift) > INT32_MAX
+            || size_of(plan->factor[c]) > LARGEST_FACTOR)
+            return 0;
     }
     return 1;
 }
@@ -79,7 +111,7 @@ static int are_samples_sound(const int32_t *samples) {
 static int are_curves_sound(const lensprof_fixed_plan *plan) {
     const lp_fixed_curve *curves = (const lp_fixed_curve *)(const void *)(plan + 1);
     const uint32_t count = plan->decode_curves + plan->encode_curves, first = count * (sizeof *curves / 4);
-    const uint32_t words = (plan->bytes - (uint32_t)sizeof *plan) / 4;
+    const uint32_t words = (plan->bytes - (uint32_t)sizeof *plan) / 4 - lp_fixed_nodes(plan);
     if (words < first || (words - first) % LENSPROF_RESPONSE_SAMPLES) return 0;
     for (const lp_fixed_curve *c = curves; c < curves + count; c++) {
         if (c->log_one < 0 || c->log_one > 32 << LP_LOG_SHIFT || (c->most && c->most != LP_LOG_MOST)) return 0;
@@ -104,7 +136,7 @@ static int are_tables_sound(const lensprof_fixed_plan *plan) {
 #if LP_HAS_WIDE_CURVES
     if (lp_fixed_is_wide(plan)) return are_curves_sound(plan);
 #endif
-    if (plan->bytes != sizeof *plan + (decode + encode) * LP_CODES * sizeof *table) return 0;
+    if (plan->bytes != sizeof *plan + ((decode + encode) * LP_CODES + lp_fixed_nodes(plan)) * sizeof *table) return 0;
     for (uint32_t i = 0; i < decode * LP_CODES; i++)
         if (size_of(table[i]) > size_of(LP_LOG_NONE)) return 0;
     return 1;

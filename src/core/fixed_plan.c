@@ -10,7 +10,8 @@
 #include "core/response.h"
 
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
-#define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
+#define LARGEST_GRID_SIDE (LP_HAS_FIXED_GRID ? LP_SENSOR_LARGEST_SIDE : 0) /* px of a frame with a grid */
+#define SMALLEST_M 0.0005 /* below the smallest one allowed, above 0 after rounding */
 
 /* Returns a linear response if pixels are light. */
 static struct lp_model_response response_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
@@ -66,11 +67,21 @@ static uint32_t sampled_of(const lensprof_apply_options *o, const lp_model *m, e
     return count;
 }
 
-static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
+/* Planes of the gain grid that a plan holds: grey uses that of green. */
+static inline uint32_t grid_channels(const lensprof_apply_options *o, const lp_model *m) {
+    return m->channels == 3 && lensprof_layout_channels(o->source_layout) == 1 ? 1 : m->channels;
+}
+
+static size_t bytes_of_tables(const lensprof_apply_options *o, const lp_model *m) {
     const uint32_t tables = tables_of(o, m, LP_INPUT) + tables_of(o, m, LP_OUTPUT);
-    if (!LP_HAS_WIDE_CURVES || !is_wide(o)) return sizeof(lensprof_fixed_plan) + tables * (LP_CODES * sizeof(int32_t));
-    return sizeof(lensprof_fixed_plan) + tables * sizeof(lp_fixed_curve)
+    if (!LP_HAS_WIDE_CURVES || !is_wide(o)) return tables * (LP_CODES * sizeof(int32_t));
+    return tables * sizeof(lp_fixed_curve)
            + (sampled_of(o, m, LP_INPUT) + sampled_of(o, m, LP_OUTPUT)) * LENSPROF_RESPONSE_SAMPLES * sizeof(int32_t);
+}
+
+static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
+    const uint32_t nodes = LP_HAS_FIXED_GRID ? grid_channels(o, m) * m->columns * m->rows : 0;
+    return sizeof(lensprof_fixed_plan) + bytes_of_tables(o, m) + nodes * sizeof(uint32_t);
 }
 
 /* ---- falloff ---- */
@@ -90,6 +101,13 @@ static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_opt
     return fmax(reach2, rho2);
 }
 
+static inline double largest_node(const lp_model *m) {
+    double largest = 0.0;
+    for (uint32_t i = 0; i < m->channels * m->columns * m->rows; i++)
+        largest = fmax(largest, (double)lp_model_node(m, i));
+    return largest;
+}
+
 /* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 if integers cannot represent them. */
 static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o, m);
@@ -98,7 +116,7 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
     for (; reach <= reach2; reach *= 2.0) shift--;
     plan->reach_shift = shift;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
-        double scale = o->strength, sum = 1.0;
+        double scale = m->columns ? 1.0 : o->strength, sum = 1.0;
         for (int n = 0; n < 3; n++) {
             scale *= reach * 4.0 / (w * w + h * h);
             k[c][n] = m->vignetting[m->vignettings == 1 ? 0 : plan->channels == 1 ? 1 : c].k[n] * scale;
@@ -106,6 +124,7 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
         }
         largest = fmax(largest, sum);
     }
+    if (LP_HAS_FIXED_GRID) largest *= fmax(largest_node(m), 1.0);
     plan->falloff_shift = 30;
     while (plan->falloff_shift >= LEAST_FALLOFF_SHIFT && ldexp(largest, (int)plan->falloff_shift) >= 2147483648.0)
         plan->falloff_shift--;
@@ -116,6 +135,28 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
     plan->least = (int32_t)(unit * fmax(o->gain_cap > 0.0 ? 1.0 / o->gain_cap : 0.0, SMALLEST_M));
     return 1;
 }
+
+#if LP_HAS_FIXED_GRID
+static void prepare_grid(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
+    lp_fixed_grid *grid = &plan->grid;
+    const double largest = largest_node(m);
+    const uint32_t sides[2] = {o->frame_width, o->frame_height}, nodes[2] = {m->columns, m->rows};
+    if (!m->columns) return;
+    grid->columns = m->columns, grid->rows = m->rows, grid->channels = grid_channels(o, m);
+    grid->strength = (uint32_t)floor(o->strength * (1u << LP_STRENGTH_SHIFT) + 0.5);
+    grid->shift = LP_SENSOR_LARGEST_SHIFT;
+    while (largest * (1u << grid->shift) > LP_SENSOR_LARGEST_NODE) grid->shift--;
+    for (int d = 0; d < 2; d++) grid->axis[d] = lp_fixed_grid_axis(sides[d], nodes[d]);
+}
+
+/* At the end of the plan. */
+static void prepare_nodes(lensprof_fixed_plan *plan, const lp_model *m) {
+    const uint32_t count = lp_fixed_nodes(plan), first = plan->grid.channels < m->channels ? count : 0; /* of green */
+    uint32_t *node = (uint32_t *)(void *)plan + plan->bytes / 4 - count;
+    for (uint32_t i = 0; i < count; i++)
+        node[i] = (uint32_t)floor((double)lp_model_node(m, first + i) * (1u << plan->grid.shift) + 0.5);
+}
+#endif
 
 /* ---- logarithms ---- */
 
@@ -215,8 +256,9 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
     if (status != LENSPROF_OK) return status;
     if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample > LENSPROF_SAMPLE_U16
         || (!LP_HAS_WIDE_CURVES && o->target_sample != o->source_sample) || o->source_layout == LENSPROF_LAYOUT_PLANAR
-        || m->columns || o->dither)
-        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U8 and U16, no planes, grid or dither");
+        || o->dither || (m->columns && (o->frame_width > LARGEST_GRID_SIDE || o->frame_height > LARGEST_GRID_SIDE)))
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
+                       "integers take U8, U16, no planes, dither, or grid over 65535");
     if (LP_HAS_CIRCLE && m->circle.radius > 0.0)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take an image circle");
     if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
@@ -285,6 +327,7 @@ static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_option
         plan->factor[c] = log_of(factor_of(plan, o, m, plan->channels == 1 ? 1 : c)); /* grey is treated as green */
     for (uint32_t c = 1; c < plan->channels; c++) {
         if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0])) plan->falloffs = 3;
+        if (plan->grid.channels == 3) plan->falloffs = 3;
         if (plan->falloffs == 3 || plan->factor[c] != plan->factor[0]) plan->gains = 3;
     }
     plan->neutral_white = lp_is_neutral_white(o) && plan->gains == 3;
@@ -303,6 +346,9 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lenspr
     prepare_layout(&head, options, &model);
     if (!prepare_falloffs(&head, options, &model))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "the falloff is too steep for integers");
+#if LP_HAS_FIXED_GRID
+    prepare_grid(&head, options, &model);
+#endif
     prepare_gains(&head, options, &model);
     head.largest = (int32_t)full_scale_of(&head, LP_OUTPUT);
 #if LP_HAS_LEVELS
@@ -319,6 +365,9 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lenspr
     else
 #endif
         prepare_tables(plan, options, &model);
+#if LP_HAS_FIXED_GRID
+    prepare_nodes(plan, &model);
+#endif
     plan->check = lp_fixed_check(plan);
     *result = plan;
     return lp_fail(error, LENSPROF_OK, "");

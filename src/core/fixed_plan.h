@@ -8,6 +8,7 @@
 #include "core/features.h"
 #include "core/image.h"
 #include "core/options.h"
+#include "core/sensor.h"
 
 #define LP_FIXED_MAGIC 0x3458464cu /* "LFX4" in memory; the last byte is the layout's version */
 #define LP_LOG_SHIFT 22            /* logarithms to base 2, in units of 2^-22 */
@@ -19,6 +20,7 @@
 #define LP_SAMPLE_SHIFT 14   /* those samples, in units of 2^-14 of a code */
 #define LP_EXPONENT_SHIFT 26 /* exponents, in units of 2^-26 */
 #define LP_LOG_MOST (1 << 30)
+#define LP_STRENGTH_SHIFT 30 /* strength, in units of 2^-30 */
 
 /* A curve between light and codes of 16 bit: a power, or the samples of a response. Both relate light to a number,
  * which is a code less black in 1 / 256, or a place among the samples:
@@ -30,6 +32,13 @@ typedef struct lp_fixed_curve {
     int32_t log_one, most; /* log2 of it; the largest log2 of light, 0 = clipped at white */
     uint32_t exponent;     /* gamma to decode, 1 / gamma to encode; 1 for samples and linear codes */
 } lp_fixed_curve;
+
+/* Attenuation between nodes: uint32_t node[channels][rows][columns] in units of 2^-shift, at the end of the plan. */
+typedef struct lp_fixed_grid {
+    uint32_t columns, rows, channels; /* 0 = no grid */
+    uint32_t shift, strength;
+    lp_sensor_axis axis[2];
+} lp_fixed_grid;
 
 struct lensprof_fixed_plan {
     uint32_t magic, bytes; /* of the plan with its tables */
@@ -53,10 +62,22 @@ struct lensprof_fixed_plan {
     int32_t largest;                                       /* code at which linear output is clipped */
     uint32_t per_span[LP_CHANNELS]; /* of a level's unit, from black to white 2^8 65535, shifted by
                                        lp_fixed_span_shift: for LENSPROF_SATURATED_NEUTRAL */
+    lp_fixed_grid grid;             /* multiplied by M, which then has no strength of its own */
     /* From U8 to U8: int32_t decode[decode_curves][256]: log2 of the light of every code; int32_t
      * encode[encode_curves][256]: log2 of the light at which code + 1 begins. Otherwise lp_fixed_curve
      * decode[decode_curves], encode[encode_curves], and their samples. */
 };
+
+/* The first and last pixel of a side have the first and last node. */
+static inline lp_sensor_axis lp_fixed_grid_axis(uint32_t pixels, uint32_t nodes) {
+    const uint32_t whole = pixels > 1 ? pixels - 1 : 1;
+    return (lp_sensor_axis){0, nodes - 1, whole, ((1u << LP_SENSOR_PART_SHIFT) + whole / 2) / whole};
+}
+
+/* Nodes of the grid, in words of the plan. */
+static inline uint32_t lp_fixed_nodes(const lensprof_fixed_plan *plan) {
+    return LP_HAS_FIXED_GRID ? plan->grid.columns * plan->grid.rows * plan->grid.channels : 0;
+}
 
 static inline uint32_t lp_fixed_target(const lensprof_fixed_plan *plan) {
     return LP_HAS_WIDE_CURVES ? plan->target : plan->sample;

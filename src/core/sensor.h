@@ -69,6 +69,12 @@ static inline lp_sensor_place lp_sensor_place_at(const lp_sensor_axis *axis, uin
     return (lp_sensor_place){node, position - node * axis->whole};
 }
 
+/* The place of the next sample. */
+static inline void lp_sensor_next(const lp_sensor_axis *axis, uint32_t nodes, lp_sensor_place *place) {
+    place->rest += axis->step;
+    while (place->rest >= axis->whole && place->node < nodes - 2) place->rest -= axis->whole, place->node++;
+}
+
 /* From one gain towards the next by a part in 2^-31. */
 static inline int32_t lp_sensor_between(int32_t from, int32_t to, uint32_t part) {
     return from + (int32_t)((int64_t)(to - from) * part >> LP_SENSOR_PART_SHIFT);

@@ -8,7 +8,7 @@ import numpy as np
 
 import lensprof as lp
 
-HEAD = struct.Struct("<5I 4B 4B 4B 2B 2B 2B 2B 2i 2I 9i i 3i 6i i 3I")
+HEAD = struct.Struct("<5I 4B 4B 4B 2B 2B 2B 2B 2i 2I 9i i 3i 6i i 3I 5I 4I 4I")
 LOG, PLACE, SAMPLE, EXPONENT = 22, 21, 14, 26  # binary places
 NONE = -(1 << 30)
 LOGS = np.round(2.0**LOG * np.log2(1 + np.arange(257) / 256)).astype(np.int64)
@@ -50,10 +50,30 @@ class Reference:
         self.center, (self.reach, self.shift) = h[25:27], h[27:29]
         self.k, self.least, self.factor = np.array(h[29:38]).reshape(3, 3), h[38], h[39:42]
         self.black_in, self.black_out, self.largest = h[42:45], h[45:48], h[48]
+        columns, rows, channels, self.grid_shift, self.strength = h[52:57]
+        self.nodes = words[len(words) - columns * rows * channels:].reshape(channels, rows, columns) if columns else None
+        self.axes = h[57:61], h[61:65]
         curves = [types.SimpleNamespace(**dict(zip(("samples", "one", "log_one", "most", "exponent"), row)), words=words)
                   for row in words[:5 * (decode + encode)].reshape(-1, 5)]
         self.decode, self.encode = ([ends[c if count == 3 else 0] for c in range(3)] if count else None
                                     for ends, count in ((curves[:decode], decode), (curves[decode:], encode)))
+
+    @staticmethod
+    def place(axis, nodes, pixel):
+        _, step, whole, per_whole = axis
+        node = np.minimum(pixel * step // whole, nodes - 2)
+        return node, (pixel * step - node * whole) * per_whole
+
+    def with_grid(self, nodes, x, y, m):
+        def between(a, b, part):
+            return a + ((b - a) * part >> 31)
+
+        (i, across), (j, down) = (self.place(axis, size, pixel)
+                                  for axis, size, pixel in zip(self.axes, nodes.shape[::-1], (x, y)))
+        attenuation = between(between(nodes[j, i], nodes[j, i + 1], across),
+                              between(nodes[j + 1, i], nodes[j + 1, i + 1], across), down)
+        one = 1 << self.shift
+        return one + (((m * attenuation >> self.grid_shift) - one) * self.strength >> 30)
 
     def gain(self, channel, x, y):
         r2 = ((x << 10) - self.center[0]) ** 2 + ((y << 10) - self.center[1]) ** 2
@@ -61,7 +81,10 @@ class Reference:
         m = np.zeros_like(t)
         for k in self.k[channel if self.falloffs == 3 else 0][::-1]:
             m = (k + m) * t >> 31
-        gain = self.factor[channel] - (log2(np.maximum(m + (1 << self.shift), self.least)) - (self.shift << LOG))
+        m += 1 << self.shift
+        if self.nodes is not None:
+            m = self.with_grid(self.nodes[channel if len(self.nodes) == 3 else 0], x, y, m)
+        gain = self.factor[channel] - (log2(np.maximum(m, self.least)) - (self.shift << LOG))
         return -gain if self.simulate else gain
 
     def light(self, code, channel):
@@ -125,7 +148,8 @@ class FixedReference(unittest.TestCase):
             input=int(random.choice([0, 0, 1])), output=int(random.choice([0, 0, 1])), direction=int(random.choice([0, 1])),
             levels=levels if random.random() < 0.5 else None, output_levels=levels if random.random() < 0.5 else None,
             source=lp.Exposure(ev=random.uniform(-1, 1), white_balance=(1.3, 1, 0.8)),
-            saturated=lp.Saturated.AS_VALUE)
+            saturated=lp.Saturated.AS_VALUE, strength=random.choice([1.0, 0.6]),
+            grid=lp.GainGrid(random.uniform(0.6, 1.1, (random.choice([1, 3]), 4, 7))) if random.random() < 0.5 else None)
         plan = lp.FixedPlan(fields)
         reference = Reference(plan.data)
         self.assertEqual((reference.magic, reference.bytes), (b"LFX4", len(plan.data)))

@@ -89,7 +89,8 @@ static void test_numbers_that_cannot_be(void **state) {
     uint64_t random = 59;
     static fixture f;
     lensprof_fixed_plan *plan = (lensprof_fixed_plan *)(void *)f.memory, was;
-    make_case(&f, LENSPROF_SAMPLE_U8, &random);
+    do make_case(&f, LENSPROF_SAMPLE_U8, &random);
+    while (plan->grid.channels != 3);
     const size_t bytes = plan->bytes;
     was = *plan;
 #define REFUSED(member, value)                                 \
@@ -125,6 +126,20 @@ static void test_numbers_that_cannot_be(void **state) {
     REFUSED(factor[2], INT32_MAX);
     REFUSED(target, LENSPROF_SAMPLE_U16);
     REFUSED(target, LENSPROF_SAMPLE_F32);
+    REFUSED(grid.columns, 0);
+    REFUSED(grid.columns, 33);
+    REFUSED(grid.rows, 1);
+    REFUSED(grid.channels, 1);
+    REFUSED(grid.channels, 2);
+    REFUSED(grid.shift, 10);
+    REFUSED(grid.shift, 40);
+    REFUSED(grid.strength, (1u << 30) + 1);
+    REFUSED(grid.axis[0].whole, 0);
+    REFUSED(grid.axis[1].step, was.grid.axis[1].step + 1);
+    REFUSED(grid.axis[1].per_whole, 0xffffffff);
+    *plan = was;
+    f.memory[bytes / 4 - 1] = 0; /* a node */
+    assert_int_equal(try_plan(f.memory, bytes, 1, &f), 0);
 #undef REFUSED
 }
 

@@ -150,7 +150,7 @@ static void test_ramps(void **state) {
         make_wide_case(&f, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_U16, n % 3 == 0, &random);
         o->source_layout = LENSPROF_LAYOUT_GREY;
         o->frame_width = CODES, o->frame_height = 1;
-        o->strength = 0.0;
+        o->strength = 0.0, o->grid = NULL;
         if (n % 4 == 1) companding_response(&f.m.response[1], &random), o->responses = 3;
         if (n % 4 == 2) response_with_flat_parts(&f.m.response[1], &random), o->responses = 3;
         if (n % 2) {
@@ -236,6 +236,7 @@ static void test_copies_and_blobs(void **state) {
         profile.responses = o->responses, profile.vignettings = o->vignettings;
         memcpy(profile.response, f.m.response, sizeof profile.response);
         memcpy(profile.vignetting, f.m.vignetting, sizeof profile.vignetting);
+        if (o->grid) profile.grid = *o->grid;
         size_t bytes;
         assert_ok(lensprof_profile_pack(&profile, 0, blob, sizeof blob, &bytes));
         assert_ok(lensprof_profile_unpack(blob, bytes, &profile));
@@ -251,7 +252,7 @@ static void test_copies_and_blobs(void **state) {
         to.data = again;
         assert_ok(lensprof_fixed_apply(opened, &f.from, &to, f.x0, f.y0));
         assert_memory_equal(f.out, again, PIXELS * lensprof_layout_samples(to.layout) * (f.to.sample ? 2 : 1));
-        o->response = NULL, o->vignetting = NULL;
+        o->response = NULL, o->vignetting = NULL, o->grid = NULL;
         o->blob = blob, o->blob_bytes = bytes;
         make_plan(&f);
         assert_int_equal(lensprof_fixed_plan_bytes(o), size);
