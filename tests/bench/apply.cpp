@@ -1,6 +1,7 @@
 // Measures how fast a profile is applied: one thread, 24 megapixel RGB, compared with memcpy and with alternatives for
 // the same work (Lensfun's lf_modifier_apply_color_modification, OpenCV's multiply by a precomputed gain image, and a
-// plain loop over tables). Times are CPU time of the thread, medians of interleaved rounds. Prints a Markdown table.
+// plain loop over tables); and a raw mosaic by each kind of plan. Times are CPU time of the thread, medians of
+// interleaved rounds. Prints a Markdown table.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,7 +15,7 @@
 #include <time.h>
 
 #include <lensfun.h>
-#include <lensprof/apply.h>
+#include <lensprof/sensor.h>
 #include <opencv2/core.hpp>
 
 namespace {
@@ -243,6 +244,91 @@ void measure() {
                  Kind<T>::name, error, 1e3 * gain.init_s, 1e3 * chain.init_s);
 }
 
+// Options and plans of a 12 bit sensor of 24 megapixels, RGGB, with a pedestal of 256.
+class Sensor {
+public:
+    Sensor() {
+        lensprof_apply_options options;
+        lensprof_readout readout;
+        lensprof_response_set_linear(&response_);
+        std::copy(kFalloff, kFalloff + 3, vignetting_.k);
+        lensprof_apply_options_init(&options);
+        options.response = &response_, options.vignetting = &vignetting_;
+        options.frame_width = kWidth, options.frame_height = kHeight;
+        options.source_sample = options.target_sample = LENSPROF_SAMPLE_U16;
+        options.source_layout = LENSPROF_LAYOUT_RGGB;
+        options.input = options.output = LENSPROF_ENCODING_LINEAR;
+        options.levels = options.output_levels = &levels_;
+        lensprof_readout_init(&readout);
+        memory_[0].resize(lensprof_plan_bytes(&options) / 8 + 1);
+        memory_[1].resize(lensprof_fixed_plan_bytes(&options) / 8 + 1);
+        if (lensprof_readout_set_mosaic(&readout, "RGGB") != LENSPROF_OK) std::abort();
+        memory_[2].resize(lensprof_sensor_plan_bytes(&readout) / 8 + 1);
+        if (lensprof_plan_init(memory_[0].data(), memory_[0].size() * 8, &options, &plan, nullptr) != LENSPROF_OK
+            || lensprof_fixed_plan_init(memory_[1].data(), memory_[1].size() * 8, &options, &fixed, nullptr)
+                   != LENSPROF_OK
+            || lensprof_sensor_plan_init(memory_[2].data(), memory_[2].size() * 8, &options, &readout, &grid, nullptr)
+                   != LENSPROF_OK)
+            std::abort();
+    }
+    const lensprof_plan *plan = nullptr;
+    const lensprof_fixed_plan *fixed = nullptr;
+    const lensprof_sensor_plan *grid = nullptr;
+
+private:
+    lensprof_response response_;
+    lensprof_vignetting vignetting_{};
+    lensprof_levels levels_ = {{256 / 65535.0, 256 / 65535.0, 256 / 65535.0}, 4095 / 65535.0};
+    std::vector<uint64_t> memory_[3];
+};
+
+void must(lensprof_status status) {
+    if (status != LENSPROF_OK) std::abort();
+}
+
+void measure_mosaic() {
+    const size_t samples = static_cast<size_t>(kWidth) * kHeight;
+    std::vector<uint16_t> source(samples), target(samples);
+    for (size_t i = 0; i < samples; i++) source[i] = static_cast<uint16_t>(256 + i * 7919 % 2000);
+    std::vector<uint8_t> packed(samples / 4 * 5);
+    const Sensor sensor;
+    const lensprof_target mosaic = {target.data(), kWidth * 2,          kWidth,
+                                    kHeight,       LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGGB};
+    const lensprof_target grey = {target.data(), kWidth * 2,          kWidth,
+                                  kHeight,       LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY};
+    const lensprof_packed_target raw = {packed.data(), kWidth * 5 / 4, kWidth, kHeight};
+    cv::Mat from(kHeight, kWidth, CV_16UC1, source.data()), to(kHeight, kWidth, CV_16UC1, target.data());
+    cv::Mat gains(kHeight, kWidth, CV_32FC1);
+    for (int y = 0; y < kHeight; y++)
+        for (int x = 0; x < kWidth; x++) gains.at<float>(y, x) = float(1.0 / attenuation(x, y));
+    auto copy = [&] { std::memcpy(target.data(), source.data(), samples * 2); };
+    std::vector<Contender> all = {
+        {"memcpy", copy, {}},
+        {"OpenCV multiply by a gain image, without black level",
+         [&] { cv::multiply(from, gains, to, 1.0, CV_16U); },
+         {}},
+        {"lensprof, float plan", [&] { must(lensprof_apply(sensor.plan, nullptr, &mosaic, 0, 0)); }, {}},
+        {"lensprof, grid of gains", [&] { must(lensprof_sensor_apply(sensor.grid, nullptr, &grey, 0, 0)); }, {}},
+        {"lensprof, grid of gains, RAW10",
+         [&] { must(lensprof_sensor_apply_packed(sensor.grid, LENSPROF_PACKING_RAW10, nullptr, &raw, 0, 0)); },
+         {}},
+        {"lensprof, integer plan", [&] { must(lensprof_fixed_apply(sensor.fixed, nullptr, &mosaic, 0, 0)); }, {}},
+    };
+    for (int round = 0; round <= 5; round++)
+        for (Contender &one : all) {
+            copy();
+            const double began = cpu_seconds();
+            one.run();
+            if (round) one.seconds.push_back(cpu_seconds() - began);
+        }
+    const double first = all[0].median(), opencv = all[1].median();
+    std::printf(
+        "\n| mosaic of 24 megapixels, 16 bit | MP/s | x memcpy's time | x OpenCV's rate |\n|---|---:|---:|---:|\n");
+    for (Contender &one : all)
+        std::printf("| %s | %.0f | %.2f | %.2f |\n", one.name.c_str(), 1e-6 * double(samples) / one.median(),
+                    one.median() / first, opencv / one.median());
+}
+
 }  // namespace
 
 int main() {
@@ -254,5 +340,6 @@ int main() {
     measure<float>();
     measure<uint16_t>();
     measure<uint8_t>();
+    measure_mosaic();
     return 0;
 }
