@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zlib
 
 SKIPPED = 77
 LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, for text
@@ -137,6 +138,24 @@ def check_page(browser, page, least_charts, ways):
     return found
 
 
+def write_card(path, corner):
+    """A grey PNG of 16 bits of an even light, whose corners are darker by this share."""
+    width, height = 96, 64
+    rows = b""
+    for y in range(height):
+        values = (40000 * (1 - corner * (((x - 47.5) ** 2 + (y - 31.5) ** 2) / 3328)) for x in range(width))
+        rows += b"\0" + b"".join(int(value).to_bytes(2, "big") for value in values)
+    head = width.to_bytes(4, "big") + height.to_bytes(4, "big") + bytes([16, 0, 0, 0, 0])
+
+    def chunk(kind, data):
+        return len(data).to_bytes(4, "big") + kind + data + zlib.crc32(kind + data).to_bytes(4, "big")
+
+    path.parent.mkdir(parents=True)
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    )
+
+
 def main():
     lensprof = pathlib.Path(sys.argv[1]).resolve()
     if not chromium():
@@ -146,8 +165,9 @@ def main():
         folder = pathlib.Path(place)
         browser = Browser(chromium(), folder)
 
-        def run(*words):
-            subprocess.run([lensprof, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        def run(*words, code=0):
+            ended = subprocess.run([lensprof, *words], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            assert ended.returncode == code, words
 
         run("simulate", "-o", "pictures", "--images", "4", "--size", "640x480")
         run("report", "pictures/pano.pto", "-o", "fit.html")
@@ -170,6 +190,11 @@ def main():
 
         run("report", "--db", "lenses.db", "--profile", "1", "-o", "one.html")
         check_page(browser, folder / "one.html", 2, (DARK,))
+
+        for unit, corner in (("a", 0.3), ("b", 0.301), ("c", 0.302), ("d", 0.4)):
+            write_card(folder / "line" / unit / "card.png", corner)
+        run("flat", "line", "--linear", "--no-store", "--units", "by=folder", "--report", "units.html", code=4)
+        check_page(browser, folder / "units.html", 6, (PHONE, DARK, DESKTOP))
     print("all pages work")
 
 

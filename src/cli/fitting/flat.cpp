@@ -8,6 +8,7 @@
 
 #include "cli/fitting/fields.hpp"
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/flat_units.hpp"
 #include "cli/fitting/lens_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
@@ -32,6 +33,7 @@ struct FlatCommand : CardOptions {
     bool json = false, progress = false;
     bool fields = false;         // pictures of different scenes, not of a card
     uint32_t field_channel = 0;  // 0: not given
+    UnitOptions compared_units;
 };
 
 std::array<double, 4> card_of(const std::string &word) {
@@ -141,13 +143,33 @@ void declare(Command &command, FlatCommand &o) {
               "CSV file of the settings of pictures, instead of EXIF: a header of file, maker, camera, lens, focal, "
               "aperture, distance in any order, then a row per picture; names may have * and ?");
     declare_flat_fit(command, o);
+    declare_units(command, o.compared_units);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
 
+bool is_lens_file(const std::string &output) { return lowercase_extension(output) == "xml"; }
+
+bool wants_lens_file(const FlatCommand &o) { return std::any_of(o.outputs.begin(), o.outputs.end(), is_lens_file); }
+
+// What concerns a lens as a whole, not units of it.
+void check_unit_options(const FlatCommand &o) {
+    const std::pair<bool, const char *> others[] = {{!o.check.empty(), "--check"},
+                                                    {!o.bundle.empty(), "--bundle"},
+                                                    {!o.into.empty(), "--into"},
+                                                    {wants_lens_file(o), "-o FILE.xml"},
+                                                    {!o.store.unit.empty(), "--key unit"}};
+    for (const auto &[is_given, name] : others)
+        if (is_given)
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          std::string("--units and ") + name + " exclude each other; omit one");
+    if (o.compared_units.stores_each && o.store.no_store)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--units store and --no-store exclude each other; omit one of them");
+}
+
 // Before anything is read.
 void check_options(const FlatCommand &o) {
-    check_store_options(o.store, !o.linear && !o.gamma);
+    check_store_options(o.store, (!o.linear && !o.gamma) || o.compared_units.against);
     if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "give the response of the pictures with one of --linear, --fit gamma=G, --fit profile=ID");
@@ -169,6 +191,7 @@ void check_options(const FlatCommand &o) {
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--into: needs -o FILE.xml, which receives the whole database");
     if (o.turned && !o.rotation_deg.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--turned and --rotation exclude each other; give one of them");
+    if (o.compared_units.rule) check_unit_options(o);
     if (o.find_card && !o.cards.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--card find and a rectangle exclude each other; give one of them");
 }
@@ -257,10 +280,6 @@ LensCards measured(const FlatCommand &o, const CardSettings &settings, Events &e
     return cards;
 }
 
-bool is_lens_file(const std::string &output) { return lowercase_extension(output) == "xml"; }
-
-bool wants_lens_file(const FlatCommand &o) { return std::any_of(o.outputs.begin(), o.outputs.end(), is_lens_file); }
-
 // Without other outputs, what prevents the file is reported before the pictures are read.
 bool is_lens_file_alone(const FlatCommand &o) {
     return !o.outputs.empty() && std::all_of(o.outputs.begin(), o.outputs.end(), is_lens_file) && o.report.empty()
@@ -324,6 +343,7 @@ const char *card_option(const FlatCommand &o) {
                                                    {!o.check.empty(), "--check"},
                                                    {!o.bundle.empty(), "--bundle"},
                                                    {!o.into.empty(), "--into"},
+                                                   {o.compared_units.rule.has_value(), "--units"},
                                                    {!o.table.empty(), "--key table"},
                                                    {o.ignore_below != cards.ignore_below, "--fit ignore-below"},
                                                    {o.ignore_above != cards.ignore_above, "--fit ignore-above"},
@@ -356,11 +376,16 @@ int run(FlatCommand o, Streams &streams) {
     if (o.fields) return run_fields(o, streams);
     if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
+    o.units = o.compared_units.rule;
     if (!o.dark_files.empty()) {
         o.dark = dark_level(o.dark_files, o.max_side, 0, events);
         refuse_dark_cards(o.files, o, *o.dark);
     }
     const CardSettings settings = settings_of(o, events);
+    if (o.compared_units.rule) {
+        check_outputs(o, settings);
+        return run_units({o, o.compared_units, o.outputs, o.report, o.json, o.progress}, settings, streams);
+    }
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <regex>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/flat.hpp"
+#include "cli/fitting/shared_lines.hpp"
 #include "cli/program/help_text.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
@@ -19,24 +18,6 @@
 
 namespace lensprof {
 namespace {
-
-// Illuminance in the corners of the frame, with the gain grid: their mean, and its standard error.
-struct Corner {
-    double value, sigma;
-};
-
-Corner corner_of(const CardFit &found) {
-    const uint32_t curve = green_curve(found.profile->vignettings);
-    double sigma = 0.0;  // with that of the light, if it was removed
-    (void)lensprof_profile_corner_falloff(found.profile.get(), curve, &sigma);
-    return {mean_light(*found.profile, curve, 1.0), std::max(found.fit.corner_sigma, sigma)};
-}
-
-// "Canon EOS R5, RF 50mm F1.8", the parts that are known.
-std::string lens_title(const lensprof_profile_key &key) {
-    const std::string camera = camera_name(key.camera_maker, key.camera_model), lens = key.lens;
-    return camera + (camera.empty() || lens.empty() ? "" : ", ") + lens;
-}
 
 std::string missing_text(const LensCards &cards) {
     std::string text;
@@ -78,58 +59,6 @@ void print_settings(const LensCards &cards, std::ostream &out) {
     }
 }
 
-// What the texts of findings end with: the error that they leave.
-double last_number(const std::string &text) {
-    const size_t end = text.find_last_of("0123456789");
-    if (end == std::string::npos) return 0.0;
-    const size_t before = text.find_last_not_of("0123456789.", end);
-    return std::strtod(text.c_str() + (before == std::string::npos ? 0 : before + 1), nullptr);
-}
-
-// Lines that several settings or files share are printed once, with the first of them.
-class SharedLines {
-public:
-    void add(const std::string &text, const std::string &item) { add(text, text, item); }
-
-    // Also shared if only numbers differ: the line of the setting with the largest is printed.
-    void add_alike(const std::string &text, const std::string &item) {
-        static const std::regex numbers(R"(\d+(?:\.\d+)?)");
-        add(std::regex_replace(text, numbers, "#"), text, item);
-    }
-
-    void print(const char *start, std::ostream &out) const {
-        for (const Line &line : lines_) {
-            out << start << one_line(line.item);
-            if (line.differs)
-                out << ", the largest of " << counted(line.count, "setting");
-            else if (line.count > 1)
-                out << " and " << line.count - 1 << " more";
-            out << (line.item.empty() ? "" : ": ") << one_line(line.text) << "\n";
-        }
-    }
-
-private:
-    struct Line {
-        std::string kind, text, item;
-        size_t count = 1;
-        bool differs = false;
-    };
-
-    void add(const std::string &kind, const std::string &text, const std::string &item) {
-        const auto same =
-            std::find_if(lines_.begin(), lines_.end(), [&](const Line &line) { return line.kind == kind; });
-        if (same == lines_.end()) {
-            lines_.push_back({kind, text, item});
-            return;
-        }
-        same->count++;
-        same->differs |= same->text != text;
-        if (last_number(text) > last_number(same->text)) same->text = text, same->item = item;
-    }
-
-    std::vector<Line> lines_;
-};
-
 // Whether the pictures that the light was checked with answer a doubt about it.
 bool is_answered(const Finding &finding, const std::optional<LightCheck> &light) {
     return finding.code == LENSPROF_REASON_FLAT_ONE_LIGHT && light
@@ -167,28 +96,6 @@ std::string off_text(const LensCards &cards) {
                : std::string();
 }
 
-void print_left_out(const LensCards &cards, std::ostream &out) {
-    if (cards.left_out.empty()) return;
-    out << "left out  " << cards.left_out.size() << " of " << counted(cards.given, "picture") << "\n";
-    SharedLines lines;
-    for (const LeftOutCard &card : cards.left_out) {
-        const bool is_named = card.reason.rfind(card.file + ": ", 0) == 0;
-        lines.add(is_named ? card.reason.substr(card.file.size() + 2) : card.reason, card.file);
-    }
-    lines.print("  ", out);
-}
-
-std::string csv_cell(const std::string &text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
-std::string csv_number(double value) {
-    return value == LENSPROF_UNKNOWN || std::isnan(value) ? "" : format("%.6g", value);
-}
-
 Json light_json(const LensCards &cards) {
     if (!cards.light) return {};
     Json rings = Json::array();
@@ -203,6 +110,18 @@ Json light_json(const LensCards &cards) {
 }
 
 }  // namespace
+
+Corner corner_of(const CardFit &found) {
+    const uint32_t curve = green_curve(found.profile->vignettings);
+    double sigma = 0.0;  // with that of the light, if it was removed
+    (void)lensprof_profile_corner_falloff(found.profile.get(), curve, &sigma);
+    return {mean_light(*found.profile, curve, 1.0), std::max(found.fit.corner_sigma, sigma)};
+}
+
+std::string lens_title(const lensprof_profile_key &key) {
+    const std::string camera = camera_name(key.camera_maker, key.camera_model), lens = key.lens;
+    return camera + (camera.empty() || lens.empty() ? "" : ", ") + lens;
+}
 
 std::string missing_lens(const LensCards &cards, const MissingSetting &missing) {
     const auto is_other = [&](const MeasuredSetting &setting) {
@@ -374,7 +293,7 @@ void print_lens(const LensCards &cards, const std::string &database, bool with_n
     if (!cards.lens_file.empty())
         out << "written   " << cards.lens_file << ": " << counted(settings_for_file(cards).numbers.size(), "setting")
             << off_text(cards) << "\n";
-    print_left_out(cards, out);
+    print_left_out(cards.left_out, cards.given, out);
 }
 
 Json lens_json(const LensCards &cards) {

@@ -40,6 +40,15 @@ std::string result_text(const LensCards &cards, size_t setting);
 // The lens of a missing setting, with its camera if the pictures are of several.
 std::string missing_lens(const LensCards &cards, const MissingSetting &missing);
 
+// Illuminance in the corners of the frame, with the gain grid: their mean, and its standard error.
+struct Corner {
+    double value, sigma;
+};
+Corner corner_of(const CardFit &found);
+
+// "Canon EOS R5, RF 50mm F1.8", the parts that are known.
+std::string lens_title(const lensprof_profile_key &key);
+
 // "24 pictures of 6 settings".
 std::string counted_settings(const CardSettings &settings);
 

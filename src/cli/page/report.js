@@ -280,6 +280,61 @@ function lensPage(report) {
     sideBySide(illuminance(report)), ...closing(report)]);
 }
 
+// One figure of all units, from the lowest to the highest, with the limits as dashed lines.
+function unitPlot(plot) {
+  const points = plot.points.slice().sort((a, b) => a.value - b.value).map((point, i) => [i + 1, point.value, point.sigma,
+    `${point.unit}: ${signed(point.value, 2)} ± ${fixed(point.sigma, 2)} %`, point.pass]);
+  if (!points.length) return null;
+  const isSigned = points[0][1] < 0;
+  const limits = isSigned ? [-plot.limit, plot.limit] : [plot.limit];
+  const [low, high] = extent(points.flatMap((point) => [point[1] - point[2], point[1] + point[2]]).concat(limits, 0), 0.1);
+  const x = { label: 'units, by this figure', low: 0, high: points.length + 1 };
+  return drawChart({ title: `Difference: ${plot.name}`, height: 280, x, y: { label: `${plot.name}, %`, low, high },
+    lines: limits.map((limit) => ({ colour: 'quiet', dash: '6 4', points: [[0, limit], [points.length + 1, limit]] })),
+    dots: [{ colour: 'accent', points: points.filter((point) => point[4]) },
+      { colour: 'red', points: points.filter((point) => !point[4]) }] });
+}
+
+// Differences over the frame, %.
+function unitMap(map, most) {
+  const cells = map.cells.map((value) => value === null ? null : { share: value / most, text: `${signed(value, 2)} %` });
+  return element('figure', { style: 'margin:0' },
+    drawCells(cells, map.columns, map.name, (cell) => cell.share > 0 ? 'red' : 'blue'),
+    element('figcaption', { class: 'quiet' }, map.name));
+}
+
+function unitBatch(batch) {
+  const parts = [batch.note ? section(null, element('p', {}, batch.note)) : null];
+  if (batch.failed.length)
+    parts.push(section('Units that do not pass', element('p', { class: 'quiet' }, 'Differences in % and their standard errors.'),
+      table(['unit', 'verdict', 'corner', 'centre', 'frame', 'colour', 'reason'], batch.failed)));
+  const plots = batch.plots.map(unitPlot).filter((plot) => plot);
+  if (plots.length)
+    parts.push(section('Differences of all units', element('p', { class: 'quiet' },
+      'From what is usual, with standard errors. Dashed: limits. Red: units that fail.'), sideBySide(...plots)));
+  if (batch.mean) {
+    const light = batch.mean.cells.map((value) => value === null ? null : { share: value / 100, text: `${fixed(value, 1)} %` });
+    const most = batch.maps[0].cells.reduce((a, value) => Math.max(a, Math.abs(value || 0)), 0.1);
+    const largest = batch.maps.slice(1).flatMap((map) => map.cells).reduce((a, value) => Math.max(a, Math.abs(value || 0)), 0.1);
+    parts.push(sideBySide(section('Usual light', element('p', { class: 'quiet' }, 'Green relative to the middle: full colour is 100 %.'),
+      drawCells(light, batch.mean.columns, 'Usual light over the frame', () => 'accent')),
+    section('Largest difference of a unit that passes', element('p', { class: 'quiet' },
+      `At each place. Red: brighter, blue: darker. Full colour is ${fixed(most, 2)} %.`), unitMap(batch.maps[0], most))));
+    if (batch.maps.length > 1)
+      parts.push(section('Differences of units that fail', element('p', { class: 'quiet' },
+        `Red: brighter, blue: darker. Full colour is ${fixed(largest, 1)} %.`),
+      sideBySide(...batch.maps.slice(1).map((map) => unitMap(map, largest)))));
+  }
+  return parts;
+}
+
+// Units of one type, a part for each setting.
+function unitsPage(report) {
+  appendPresent(page, [heading(report.title, report.subtitle), verdict(report),
+    ...report.batches.flatMap((batch) => [report.batches.length > 1 ? element('h2', {}, batch.title) : null, ...unitBatch(batch)]),
+    ...closing(report)]);
+}
+
 function cameras(report) {
   if (!report.cameras.length) return '';
   return section('Cameras', table(['camera', 'profiles', 'response'], report.cameras.map((camera) =>
@@ -411,5 +466,6 @@ if (data.kind === 'database') databasePage(data);
 else if (data.kind === 'profile') profilePage(data);
 else if (data.kind === 'card') profilePage(data, ...card(data));
 else if (data.kind === 'lens') lensPage(data);
+else if (data.kind === 'units') unitsPage(data);
 else if (data.kind === 'folder') folderPage(data);
 else fitPage(data);

@@ -48,6 +48,9 @@ std::string option_of(const std::string &name) {
         {"track_colours", "--reconstruction track-colors"},
         {"turned", "--turned"},
         {"unit", "--key unit"},
+        {"units_against", "--units against=ID"},
+        {"units_by", "--units by=folder or by=serial"},
+        {"units_by_name", "--units by=cam_{unit}_*"},
         {"unit_text", "--key unit=TEXT"},
         {"white_level", "--fit white-level=LEVEL"},
     };

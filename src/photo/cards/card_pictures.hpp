@@ -15,6 +15,17 @@
 
 namespace lensprof {
 
+// Where pictures state the unit that they are of.
+struct UnitRule {
+    enum class By {
+        automatic,
+        folder,
+        serial,
+        name
+    } by = By::automatic;
+    std::string pattern;  // of names: {unit} is the unit, * and ? as in file names
+};
+
 // How cards are measured. Vectors per picture, shot or card are empty, or as long as the pictures require.
 struct CardOptions {
     StoreOptions store;
@@ -33,13 +44,15 @@ struct CardOptions {
     std::vector<std::string> dark_files;  // with the lens covered; they are not cards
     std::optional<DarkLevel> dark;        // of them, instead of a stated black level
     uint32_t max_side = 1600;
-    uint32_t threads = 0;  // of one fit; 0: all cores
+    uint32_t threads = 0;           // of one fit; 0: all cores
+    std::optional<UnitRule> units;  // each unit is measured alone; empty: the pictures are of one
 };
 
 struct CardPicture {
     std::string file;
     PictureMetadata metadata;  // its key completed by names and table
     size_t index = 0;          // of the pictures given, of which lists of options have a value each
+    std::string unit = {};     // that it is of, where units are measured alone
 };
 
 // All inputs of the library call, and the memory they refer to.

@@ -13,6 +13,7 @@
 #include "photo/calibration/lens_settings.hpp"
 #include "photo/cards/card_advice.hpp"
 #include "photo/cards/card_names.hpp"
+#include "photo/cards/card_units.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/report/report.hpp"
 
@@ -53,6 +54,7 @@ std::vector<Read> read_all(const std::vector<NamedPicture> &named, const CardOpt
             read[i].failure = failure.what();
         }
     });
+    const std::vector<std::string> paths = o.units ? paths_without_units(*o.units, named) : std::vector<std::string>();
     for (size_t i = 0; i < read.size(); i++) {
         Read &one = read[i];
         if (!one.picture) {
@@ -60,7 +62,7 @@ std::vector<Read> read_all(const std::vector<NamedPicture> &named, const CardOpt
             continue;
         }
         lensprof_profile_key &key = one.picture->metadata.key;
-        complete_by_names(one.picture->file, key);
+        complete_by_names(o.units ? paths[i] : named[i].file, key);
         if (table) table->apply(one.picture->file, key);
         one.stated = key;
         replace_by_options(o.store, key);
@@ -281,6 +283,22 @@ void leave_out_unknown(CardSettings &settings) {
     settings.list.erase(unknown, settings.list.end());
 }
 
+// A setting of several units becomes one per unit, in the order of their names.
+std::vector<CardSetting> settings_of_units(const std::vector<CardSetting> &settings) {
+    std::vector<CardSetting> split;
+    for (size_t group = 0; group < settings.size(); group++) {
+        std::map<std::string, CardSetting> units;
+        for (const CardPicture &picture : settings[group].pictures) {
+            CardSetting &own = units[picture.unit];
+            own.key = settings[group].key, own.label = settings[group].label;
+            own.unit = picture.unit, own.group = group;
+            own.pictures.push_back(picture);
+        }
+        for (auto &[unit, own] : units) split.push_back(std::move(own));
+    }
+    return split;
+}
+
 }  // namespace
 
 CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
@@ -306,6 +324,9 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
         else
             settings.left_out.push_back({named[i].file, reason});
     }
+    if (o.units)
+        for (const PictureWithoutUnit &one : assign_units(*o.units, named, pictures, events))
+            settings.left_out.push_back({one.file, one.reason});
     if (pictures.empty()) {
         const LeftOutCard &first = settings.left_out.front();
         throw Failure(LENSPROF_ERROR_READ, settings.left_out.size() == 1
@@ -316,6 +337,7 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     settings.list = grouped(pictures, events);
     leave_out_unknown(settings);
     for (CardSetting &setting : settings.list) note_rounding(setting, events), take_numbers(setting);
+    if (o.units) settings.list = settings_of_units(settings.list);
     return settings;
 }
 

@@ -13,7 +13,9 @@ namespace lensprof {
 struct CardSetting {
     lensprof_profile_key key{};  // of the picture whose numbers are rounded least
     std::vector<CardPicture> pictures;
-    std::string label;  // "24 mm, f/2.8"
+    std::string label;      // "24 mm, f/2.8"
+    std::string unit = {};  // where units are measured alone
+    size_t group = 0;       // number of the setting, which several units share
 };
 
 struct LeftOutCard {
@@ -27,10 +29,11 @@ struct CardSettings {
     bool has_folders = false;
 };
 
-// Finds the settings of pictures and folders of them, whatever their order: by EXIF, completed by names, replaced by
-// `table` (NULL: none) and by what `o` states for all. Left out, with the reason: files that cannot be read; of
-// folders, copies of other pictures and those whose falloff the camera corrected; and, of several settings, pictures
-// that state neither focal length nor aperture. Failure if nothing is left.
+// Where units are measured alone, each has settings of its own. Finds the settings of pictures and folders of them,
+// whatever their order: by EXIF, completed by names, replaced by `table` (NULL: none) and by what `o` states for all.
+// Left out, with the reason: files that cannot be read; of folders, copies of other pictures and those whose falloff
+// the camera corrected; and, of several settings, pictures that state neither focal length nor aperture. Failure if
+// nothing is left.
 CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
                            Events &events);
 
