@@ -33,6 +33,7 @@ struct FlatCommand : CardOptions {
     bool json = false, progress = false;
     bool fields = false;         // pictures of different scenes, not of a card
     uint32_t field_channel = 0;  // 0: not given
+    SensorTables sensor_tables;
     UnitOptions compared_units;
 };
 
@@ -68,6 +69,8 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
     keys.word(
         "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
         "sample at saturation, as a value such as 4095 or a percentage; default full scale, which is 1 for float samples");
+    keys.choice("tables", o.sensor_tables, {{"16x12", {16, 12}}, {"32x32", {32, 32}}},
+                "with -o FILE.json: size of the tables, 16x12 (default) or 32x32, which a Raspberry Pi 5 reads");
     keys.count("channel", o.field_channel, 1, 1000, "with --fields: channel of stacks that have several, from 1");
     declare_max_side(keys, o.max_side);
 }
@@ -95,7 +98,8 @@ void declare(Command &command, FlatCommand &o) {
     command.words(
         "-o,--output", "FILE", [&o](const std::string &word) { o.outputs.push_back(word); },
         "write the lens: its good settings for Lensfun as .xml (--into adds them to a database of Lensfun), a table of "
-        "all settings as .csv; repeat for both");
+        "all settings as .csv, or the shading of a sensor at its colour temperatures for the Raspberry Pi as .json; "
+        "repeat for several");
     command.file("--report", o.report,
                  "write a report with charts as one .html file (--bundle: with all else for an upload)");
     Command expert = command.expert();
@@ -141,7 +145,7 @@ void declare(Command &command, FlatCommand &o) {
     declare_store(command, o.store)
         .file("table", o.table,
               "CSV file of the settings of pictures, instead of EXIF: a header of file, maker, camera, lens, focal, "
-              "aperture, distance in any order, then a row per picture; names may have * and ?");
+              "aperture, distance, temperature in any order, then a row per picture; names may have * and ?");
     declare_flat_fit(command, o);
     declare_units(command, o.compared_units);
     declare_json(command, o.json);
@@ -149,6 +153,10 @@ void declare(Command &command, FlatCommand &o) {
 }
 
 bool is_lens_file(const std::string &output) { return lowercase_extension(output) == "xml"; }
+
+bool is_sensor_file(const std::string &output) { return lowercase_extension(output) == "json"; }
+
+bool wants_sensor_file(const FlatCommand &o) { return std::any_of(o.outputs.begin(), o.outputs.end(), is_sensor_file); }
 
 bool wants_lens_file(const FlatCommand &o) { return std::any_of(o.outputs.begin(), o.outputs.end(), is_lens_file); }
 
@@ -158,6 +166,7 @@ void check_unit_options(const FlatCommand &o) {
                                                     {!o.bundle.empty(), "--bundle"},
                                                     {!o.into.empty(), "--into"},
                                                     {wants_lens_file(o), "-o FILE.xml"},
+                                                    {wants_sensor_file(o), "-o FILE.json"},
                                                     {!o.store.unit.empty(), "--key unit"}};
     for (const auto &[is_given, name] : others)
         if (is_given)
@@ -310,11 +319,15 @@ int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &stream
     const std::string obstacle = lacking.empty() && wants_lens_file(o) ? several_for_lensfun(settings) : lacking;
     if (is_lens_file_alone(o) && !obstacle.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, o.outputs.front() + ": " + obstacle);
+    if (const std::string several = wants_sensor_file(o) ? several_for_sensor(settings) : ""; !several.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      *std::find_if(o.outputs.begin(), o.outputs.end(), is_sensor_file) + ": " + several);
     Progress progress(streams, o.progress);
     progress.note("", counted_settings(settings) + (settings.list.size() > 1 ? ": each is measured alone" : ""));
     LensCards cards = measured(o, settings, progress);
     cards.lens_file_obstacle = obstacle;
     if (has_lens_file) make_or_explain(o, cards, !lacking.empty(), progress);
+    if (wants_sensor_file(o)) make_sensor_file(o.sensor_tables, cards);
     OutputFiles outputs;
     for (const std::string &output : o.outputs) add_lens_output(output, cards, outputs);
     if (!o.bundle.empty()) add_bundle(o.bundle, cards, command_text(streams.words), progress, outputs);
@@ -402,13 +415,14 @@ void declare_flat(Command &program) {
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
     command.footer(
-        "Pictures are grouped by camera, lens, focal length, aperture and distance, as EXIF or their names\n"
-        "state them, and every setting is measured alone; of several settings, or a folder, a table has a\n"
-        "line for each. Exit code 0: all are good; 4: some must be taken again, or something is missing for\n"
-        "the file for Lensfun; 3: files could not be read.\n"
+        "Pictures are grouped by camera, lens, focal length, aperture, distance and colour temperature, as\n"
+        "EXIF or their names state them, and every setting is measured alone; of several settings, or a\n"
+        "folder, a table has a line for each. Exit code 0: all are good; 4: some must be taken again, a unit\n"
+        "does not pass, or something is missing for the file for Lensfun; 3: files could not be read.\n"
         "With --fields, pictures of anything, such as fields of a microscope, give the shading that all\n"
         "have in common; see docs/fields.md.");
     command.example("lensprof flat cards -o lens.xml --report lens.html");
+    command.example("lensprof flat line --linear --units by=folder -o units.csv --report line.html");
     command.example("lensprof flat --fields slides --camera Orca --lens \"10x 0.30\" -o shading.tif");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }

@@ -19,6 +19,12 @@
 namespace lensprof {
 namespace {
 
+// " at 2850 K"; empty if it is unknown.
+std::string temperature_text(const lensprof_profile_key &key, const char *before) {
+    return key.color_temperature_k == LENSPROF_UNKNOWN ? std::string()
+                                                       : before + format("%g K", key.color_temperature_k);
+}
+
 std::string missing_text(const LensCards &cards) {
     std::string text;
     double focal = 0.0;
@@ -156,9 +162,11 @@ std::string counted_settings(const CardSettings &settings) {
 
 void check_lens_output(const std::string &output) {
     const std::string kind = lowercase_extension(output);
-    if (kind != "xml" && kind != "csv")
+    if (kind != "xml" && kind != "csv" && kind != "json")
         throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      output + ": give a name that ends in .xml, for Lensfun, or .csv, a table");
+                      output
+                          + ": give a name that ends in .xml, for Lensfun, .csv, a table, or .json, tables of a "
+                            "sensor for the Raspberry Pi");
 }
 
 std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &settings) {
@@ -181,16 +189,31 @@ std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &s
 
 std::string several_for_lensfun(const CardSettings &settings) {
     std::set<std::string> titles;
-    for (const CardSetting &setting : settings.list) titles.insert(lens_title(setting.key));
+    for (const CardSetting &setting : settings.list)
+        titles.insert(lens_title(setting.key) + temperature_text(setting.key, " at "));
     if (titles.size() < 2) return {};
     return "holds one lens on one camera, but the pictures are of " + joined({titles.begin(), titles.end()}, "; ")
            + ": give each its own run, or omit -o";
 }
 
+std::string several_for_sensor(const CardSettings &settings) {
+    std::set<std::string> titles;
+    for (const CardSetting &setting : settings.list) {
+        const KeyParts parts = key_parts(setting.key);
+        std::string title = lens_title(setting.key);
+        for (const size_t part : {2, 3, 4})
+            if (!parts[part].empty()) title += (title.empty() ? "" : ", ") + parts[part];
+        titles.insert(title);
+    }
+    if (titles.size() < 2) return {};
+    return "holds one sensor and lens at several colour temperatures, but the pictures are of "
+           + joined({titles.begin(), titles.end()}, "; ") + ": give each its own run, or omit -o";
+}
+
 std::string lens_csv(const LensCards &cards) {
     std::string text =
         "camera,lens,focal_mm,aperture,distance_m,pictures,usable,corner,corner_sigma,k1,k2,k3,reason,"
-        "lensfun_ev\n";
+        "lensfun_ev,color_temperature_k\n";
     for (size_t n = 0; n < cards.settings.size(); n++) {
         const MeasuredSetting &setting = cards.settings[n];
         const lensprof_profile_key &key = setting.fit ? setting.fit->key : setting.of.key;
@@ -207,7 +230,8 @@ std::string lens_csv(const LensCards &cards) {
         }
         const bool is_noted = setting.is_good() && !cards.is_good_for_lensfun(n);
         text += "," + csv_cell(is_noted ? result_text(cards, n) : setting.refusal) + ","
-                + (n < cards.lens_file_ev.size() ? csv_number(cards.lens_file_ev[n]) : std::string()) + "\n";
+                + (n < cards.lens_file_ev.size() ? csv_number(cards.lens_file_ev[n]) : std::string()) + ","
+                + csv_number(key.color_temperature_k) + "\n";
     }
     return text;
 }
@@ -261,7 +285,35 @@ void make_lens_file(const LensFileSource &source, LensCards &cards) {
             if (!about.empty()) cards.lens_file_notes.push_back(about);
 }
 
+void make_sensor_file(const SensorTables &tables, LensCards &cards) {
+    constexpr double noted = 0.01;  // of the light
+    std::vector<const lensprof_profile *> profiles;
+    double aspect = usual_aspect;  // of the sensor, which is not higher than wide
+    for (const MeasuredSetting &setting : cards.settings) {
+        if (!setting.is_good()) continue;
+        profiles.push_back(setting.fit->profile.get());
+        aspect = std::max(setting.fit->aspect, 1.0 / setting.fit->aspect);
+    }
+    if (profiles.empty()) return;
+    SensorFileCost cost;
+    cards.sensor_file_text = sensor_file_text(profiles, aspect, tables, cost);
+    if (cost.has_colours && profiles.front()->key.color_temperature_k == LENSPROF_UNKNOWN)
+        cards.sensor_file_note =
+            "no colour temperature is stated: the tables are those of 4500 K; sort the pictures in "
+            "folders such as 2850K, or give "
+            + option_name("temperature");
+    else if (cost.green > noted)
+        cards.sensor_file_note = format(
+            "the light in green differs by up to %.1f %% between the colour temperatures; "
+            "the file has one luminance table, their mean",
+            100.0 * cost.green);
+}
+
 void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &outputs) {
+    if (lowercase_extension(path) == "json") {
+        if (!cards.sensor_file_text.empty()) outputs.add(path, cards.sensor_file_text);
+        return;
+    }
     if (lowercase_extension(path) == "csv") return outputs.add(path, lens_csv(cards));
     if (cards.lens_file_text.empty() || !cards.lens_file_obstacle.empty()) return;
     outputs.add(path, cards.lens_file_text);
@@ -293,6 +345,7 @@ void print_lens(const LensCards &cards, const std::string &database, bool with_n
     if (!cards.lens_file.empty())
         out << "written   " << cards.lens_file << ": " << counted(settings_for_file(cards).numbers.size(), "setting")
             << off_text(cards) << "\n";
+    if (!cards.sensor_file_note.empty() && with_notes) out << "note      " << cards.sensor_file_note << "\n";
     print_left_out(cards.left_out, cards.given, out);
 }
 
@@ -333,6 +386,7 @@ Json lens_json(const LensCards &cards) {
             {"light", light_json(cards)},
             {"left_out", left_out},
             {"lens_file_notes", cards.lens_file_notes},
+            {"sensor_file_note", cards.sensor_file_note.empty() ? Json() : Json(cards.sensor_file_note)},
             {"lens_file_obstacle", cards.lens_file_obstacle.empty() ? Json() : Json(cards.lens_file_obstacle)},
             {"lens_file", cards.lens_file.empty() ? Json() : Json(cards.lens_file)}};
 }

@@ -8,6 +8,7 @@
 
 #include "cli/program/exit_code.hpp"
 #include "photo/base/output_file.hpp"
+#include "photo/calibration/sensor_file.hpp"
 #include "photo/cards/card_light.hpp"
 #include "photo/cards/lens_cards.hpp"
 #include "photo/report/report.hpp"
@@ -26,6 +27,8 @@ struct LensCards {
     std::vector<double> lens_file_ev;          // per setting, its error in a corner there; NAN: not in it
     std::vector<std::string> lens_file_notes;  // what is lost in it, or unknown
     std::string lens_file;                     // written of it; empty: none
+    std::string sensor_file_text;              // tables at all colour temperatures; empty: not asked for, or none good
+    std::string sensor_file_note;              // what they lose; empty: nothing to note
 
     size_t good() const;
     bool is_good_for_lensfun(size_t setting) const;  // or not in the file
@@ -52,7 +55,7 @@ std::string lens_title(const lensprof_profile_key &key);
 // "24 pictures of 6 settings".
 std::string counted_settings(const CardSettings &settings);
 
-// Failure for a name that is neither .xml nor .csv.
+// Failure for a name that is neither .xml, .csv nor .json.
 void check_lens_output(const std::string &output);
 
 // What settings lack for Lensfun, and the option that states it; empty if they lack nothing.
@@ -60,6 +63,9 @@ std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &s
 
 // Several cameras or lenses, which one entry of Lensfun cannot be; empty for one.
 std::string several_for_lensfun(const CardSettings &settings);
+
+// Settings that differ in more than the colour temperature, which one file of a sensor cannot hold; empty for one.
+std::string several_for_sensor(const CardSettings &settings);
 
 // Where the file for Lensfun finds cameras, and the database of Lensfun that it is added to; empty: none.
 struct LensFileSource {
@@ -72,6 +78,9 @@ std::string lens_csv(const LensCards &cards);
 
 // Sets the text for Lensfun, with its notes and errors. Failure if Lensfun cannot hold a setting.
 void make_lens_file(const LensFileSource &source, LensCards &cards);
+
+// Sets the text of the good settings for libcamera, and its note.
+void make_sensor_file(const SensorTables &tables, LensCards &cards);
 
 // Adds such a file. One for Lensfun is added if there is a text and no obstacle, and becomes `lens_file`.
 void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &outputs);

@@ -36,6 +36,8 @@ Keys declare_store(Command &command, StoreOptions &o) {
     keys.number("crop-factor", o.crop_factor, crop_factors,
                 "43.27 mm divided by the sensor diagonal; default from EXIF or the table of cameras");
     keys.number("distance", o.distance, distances, "focus distance, m, such as 3 or 3m");
+    keys.number("temperature", o.temperature, temperatures,
+                "colour temperature of the light, K, if the falloff depends on it, such as 2850 or 2850K");
     keys.choice("processing", o.processing, processing_choices(),
                 "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera)");
     keys.text("style", o.style, "picture style, by the camera's name for it");

@@ -203,6 +203,8 @@ std::string batch_title(const UnitCards &cards, const UnitBatch &batch) {
     const KeyParts parts = key_parts(key);
     for (const size_t part : {2, 3, 4})
         if (!parts[part].empty()) title += (title.empty() ? "" : ", ") + parts[part];
+    if (key.color_temperature_k != LENSPROF_UNKNOWN)
+        title += (title.empty() ? "" : ", ") + format("%g K", key.color_temperature_k);
     return title.empty() ? "camera not stated" : title;
 }
 

@@ -21,6 +21,7 @@ UnitRule rule_of(Unit unit) {
     case Unit::f_number: return {"an aperture", "", "4, f/4 or F4"};
     case Unit::time_s: return {"an exposure time", "s", "0.5, 1/60 or 1/60s"};
     case Unit::distance_m: return {"a distance", "m", "3 or 3m"};
+    case Unit::temperature_k: return {"a colour temperature", "K", "2850 or 2850K"};
     default: return {"", "", ""};
     }
 }

@@ -45,6 +45,7 @@ std::string option_of(const std::string &name) {
         {"shard", "--reconstruction shard"},
         {"stored", "--fit stored"},
         {"style", "--key style"},
+        {"temperature", "--key temperature"},
         {"track_colours", "--reconstruction track-colors"},
         {"turned", "--turned"},
         {"unit", "--key unit"},

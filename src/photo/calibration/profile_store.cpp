@@ -42,6 +42,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
+    if (o.temperature != LENSPROF_UNKNOWN) key.color_temperature_k = o.temperature;
     if (o.processing) key.processing = *o.processing;
     if (!o.style.empty()) set_text(key.style, sizeof key.style, o.style);
     if (!*key.camera_model && !*key.lens && !o.no_store)

@@ -19,7 +19,7 @@ struct StoreOptions {
     std::string maker, camera, lens, unit, style;
     std::optional<uint32_t> processing;  // LENSPROF_PROCESSING_...
     double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
-           distance = LENSPROF_UNKNOWN;
+           distance = LENSPROF_UNKNOWN, temperature = LENSPROF_UNKNOWN;
     bool no_store = false, force = false;
 };
 

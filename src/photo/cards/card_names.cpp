@@ -57,7 +57,8 @@ bool read_word(const std::string &word, lensprof_profile_key &key) {
     static const std::regex focal(R"((\d+(?:\.\d+)?)mm)", std::regex::icase),
         aperture(R"(f\W?((?:[1-9]\d*|0(?=\.))(?:\.\d+)?))", std::regex::icase),
         distance(R"((\d+(?:\.\d+)?)m)", std::regex::icase), infinity("inf|infinity", std::regex::icase),
-        other(R"(\d+|f0\d+|card|flat|white|wall|sky|img|image|dsc|dscf|shot|raw|field)", std::regex::icase);
+        other(R"(\d+|f0\d+|\d{4,5}k|alsc|card|flat|white|wall|sky|img|image|dsc|dscf|shot|raw|field)",
+              std::regex::icase);
     std::smatch number;
     if (std::regex_match(word, number, focal)) return fill(key.focal_mm, positive(number[1])), true;
     if (std::regex_match(word, number, aperture)) return fill(key.aperture, positive(number[1])), true;
@@ -75,6 +76,13 @@ void read_words(const std::string &name, lensprof_profile_key &key) {
     key = read;
 }
 
+// A word of a name with others of any kind.
+void read_temperature(const std::string &name, lensprof_profile_key &key) {
+    static const std::regex form(R"((?:^|[ _.-])([1-9]\d{3}|1\d{4})K(?![A-Za-z0-9]))", std::regex::icase);
+    std::smatch number;
+    if (std::regex_search(name, number, form)) fill(key.color_temperature_k, positive(number[1]));
+}
+
 }  // namespace
 
 lensprof_profile_key setting_of_names(const std::string &path) {
@@ -85,6 +93,7 @@ lensprof_profile_key setting_of_names(const std::string &path) {
     for (std::filesystem::path folder = file.parent_path(); folder.has_filename(); folder = folder.parent_path())
         names.push_back(folder.filename().string());
     for (size_t n = 0; n < names.size(); n++) {
+        read_temperature(names[n], key);
         if (n == 0 ? read_three_parts(names[n], key) : read_distance_folder(names[n], key)) continue;
         read_words(names[n], key);
     }

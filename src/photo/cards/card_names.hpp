@@ -13,6 +13,9 @@ namespace lensprof {
 //                                                              "__" a slash
 //   35mm--2.8.CR2                                              the same of a lens that is stated elsewhere
 //   vignetting_10, vignetting                                  folders of these scripts: the distance in m; infinity
+//   2850K, alsc_3000k_0.dng                                    colour temperature of the light, as in names for
+//   libcamera's
+//                                                              tuning tool; a word of any name
 //   24mm_f4_2.tif, f2.8/1.dng, 50mm/0.5m/card-3.tif            names of settings, numbers and words for a card alone;
 //                                                              f01 is a number of a picture, as f/1 is not written so
 // The innermost name that states a field counts.

@@ -27,6 +27,7 @@ void complete_by_names(const std::string &file, lensprof_profile_key &key) {
     if (key.focal_mm == LENSPROF_UNKNOWN) key.focal_mm = named.focal_mm;
     if (key.aperture == LENSPROF_UNKNOWN) key.aperture = named.aperture;
     if (key.distance_m == LENSPROF_UNKNOWN) key.distance_m = named.distance_m;
+    if (key.color_temperature_k == LENSPROF_UNKNOWN) key.color_temperature_k = named.color_temperature_k;
 }
 
 void replace_by_options(const StoreOptions &o, lensprof_profile_key &key) {
@@ -35,6 +36,7 @@ void replace_by_options(const StoreOptions &o, lensprof_profile_key &key) {
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
+    if (o.temperature != LENSPROF_UNKNOWN) key.color_temperature_k = o.temperature;
 }
 
 struct Read {
@@ -111,12 +113,23 @@ bool is_same(const lensprof_profile_key &a, const lensprof_profile_key &b) {
     };
     return std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.lens, b.lens) == 0
            && are_alike(a.focal_mm, b.focal_mm, is_same_focal) && are_alike(a.aperture, b.aperture, is_same_aperture)
-           && is_same_setting(a, b) && is_same_distance(a.distance_m, b.distance_m);
+           && is_same_setting(a, b) && is_same_distance(a.distance_m, b.distance_m)
+           && a.color_temperature_k == b.color_temperature_k;
 }
 
 auto rank_of(const lensprof_profile_key &key) {
     return std::make_tuple(std::string(key.camera_model), std::string(key.lens), key.focal_mm, key.aperture,
-                           key.distance_m);
+                           key.distance_m, key.color_temperature_k);
+}
+
+// "24 mm, f/2.8, 2850 K".
+std::string label_of(const lensprof_profile_key &key, const std::string &first) {
+    const std::string temperature =
+        key.color_temperature_k == LENSPROF_UNKNOWN ? std::string() : format("%g K", key.color_temperature_k);
+    const bool is_stated =
+        key.focal_mm != LENSPROF_UNKNOWN || key.aperture != LENSPROF_UNKNOWN || key.distance_m != LENSPROF_UNKNOWN;
+    if (temperature.empty()) return describe_setting(key, first);
+    return is_stated ? describe_setting(key, first) + ", " + temperature : temperature;
 }
 
 // The least rounded numbers come first: apertures as cameras show them, focal lengths with most digits, distances that
@@ -165,7 +178,7 @@ std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures, Event
             joined.insert(joined.end(), own.begin(), own.end());
             continue;
         }
-        const std::string label = describe_setting(key, own.front().file);
+        const std::string label = label_of(key, own.front().file);
         if (sources.size() > 1)
             events.note(label, "may be " + groups[sources[0]].setting.label + " or " + groups[sources[1]].setting.label
                                    + ", by the rounding of what cameras state: measured alone; give a table if it is "
@@ -299,6 +312,20 @@ std::vector<CardSetting> settings_of_units(const std::vector<CardSetting> &setti
     return split;
 }
 
+// Where the colour temperature of some cards is stated, that of none is the usual one.
+void leave_out_without_temperature(CardSettings &settings) {
+    const auto has_temperature = [](const CardSetting &s) { return s.key.color_temperature_k != LENSPROF_UNKNOWN; };
+    const auto unknown = std::stable_partition(settings.list.begin(), settings.list.end(), has_temperature);
+    if (unknown == settings.list.begin()) return;
+    for (auto setting = unknown; setting != settings.list.end(); ++setting)
+        for (const CardPicture &picture : setting->pictures)
+            settings.left_out.push_back(
+                {picture.file, picture.file
+                                   + ": its name does not state the colour temperature, as those of others do; put it "
+                                     "in a folder such as 2850K, or give a table"});
+    settings.list.erase(unknown, settings.list.end());
+}
+
 }  // namespace
 
 CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
@@ -336,6 +363,7 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     }
     settings.list = grouped(pictures, events);
     leave_out_unknown(settings);
+    leave_out_without_temperature(settings);
     for (CardSetting &setting : settings.list) note_rounding(setting, events), take_numbers(setting);
     if (o.units) settings.list = settings_of_units(settings.list);
     return settings;

@@ -97,6 +97,7 @@ Setter setter_of(const std::string &column) {
     if (column == "lens") return text_setter(&lensprof_profile_key::lens);
     if (column == "focal") return number_setter(&lensprof_profile_key::focal_mm, "mm", false);
     if (column == "aperture") return number_setter(&lensprof_profile_key::aperture, "", false);
+    if (column == "temperature") return number_setter(&lensprof_profile_key::color_temperature_k, "k", false);
     if (column == "distance") return number_setter(&lensprof_profile_key::distance_m, "m", true);
     throw std::invalid_argument(column);
 }
@@ -117,6 +118,7 @@ void replace(const lensprof_profile_key &by, lensprof_profile_key &key) {
     if (by.focal_mm != LENSPROF_UNKNOWN) key.focal_mm = by.focal_mm;
     if (by.aperture != LENSPROF_UNKNOWN) key.aperture = by.aperture;
     if (by.distance_m != LENSPROF_UNKNOWN) key.distance_m = by.distance_m;
+    if (by.color_temperature_k != LENSPROF_UNKNOWN) key.color_temperature_k = by.color_temperature_k;
 }
 
 }  // namespace
@@ -140,7 +142,8 @@ SettingTable::SettingTable(const std::string &path) {
             setters.push_back(setter_of(columns[c]));
         } catch (const std::invalid_argument &) {
             fail(path, 1,
-                 "'" + columns[c] + "' is not a column; use file, maker, camera, lens, focal, aperture, distance");
+                 "'" + columns[c]
+                     + "' is not a column; use file, maker, camera, lens, focal, aperture, distance, temperature");
         }
         if (!setters.back()) file_column = c;
     }

@@ -9,8 +9,8 @@
 namespace lensprof {
 
 // Columns: file, and any of maker, camera, lens, focal (58 or 58 mm), aperture (2.8 or f/2.8), distance (10, 10 m or
-// inf); separated by commas, semicolons or tabs; empty cells state nothing. `file` is the name of a picture, or its
-// path from the end, and may have * and ?; the first row that fits a picture counts.
+// inf), temperature (2850, 2850K); separated by commas, semicolons or tabs; empty cells state nothing. `file` is the
+// name of a picture, or its path from the end, and may have * and ?; the first row that fits a picture counts.
 class SettingTable {
 public:
     // Failure (READ) that names the line.
