@@ -1,6 +1,7 @@
 // `lensprof flat --units`: cameras of one type, each measured alone and compared with the others.
 #include "cli_runs.hpp"
 
+#include <cstring>
 #include <map>
 
 #include "photo/base/format.hpp"
@@ -143,6 +144,27 @@ void test_one_light_for_all(void **) {
     assert_true(contains(json["batches"][0]["note"], "slope"));
 }
 
+// The centre of a portrait picture that may have been rotated either way is unknown: it does not pass for being in the
+// middle.
+void test_rotated_pictures(void **) {
+    const std::string folder = make_units("rotated", 4);
+    const std::string first = in_folder("rotated/u00/card.tif");
+    const Picture upright = read_picture(first);
+    Picture picture = make_noise(height, width, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    for (uint32_t y = 0; y < width; y++)
+        for (uint32_t x = 0; x < height; x++)
+            std::memcpy(picture.pixels.data() + y * picture.row_bytes + 6 * x,
+                        upright.pixels.data() + x * upright.row_bytes + 6 * y, 6);
+    fs::remove(first);
+    PictureMetadata metadata = unknown_metadata();
+    set_text(metadata.key.camera_model, sizeof metadata.key.camera_model, "Cam 7");
+    WriteOptions options;
+    options.metadata = &metadata;
+    write_picture(first, picture, options);
+    const std::string out = must_exit(not_usable, units_of(folder, {"--units", "by=folder", "--no-store"}));
+    assert_true(contains(out, "3 pass, 1 not measured") && contains(out, "higher than wide"));
+}
+
 // Two types are two batches, grey pictures have no colours, and names of units are not settings.
 void test_types_are_not_mixed(void **) {
     uint64_t random = 7;
@@ -237,6 +259,7 @@ int main() {
         CLI_TEST(test_a_line),
         CLI_TEST(test_few_units),
         CLI_TEST(test_one_light_for_all),
+        CLI_TEST(test_rotated_pictures),
         CLI_TEST(test_types_are_not_mixed),
         CLI_TEST(test_unknown_units),
         CLI_TEST(test_units_by_folder_and_serial),

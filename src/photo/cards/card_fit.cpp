@@ -59,12 +59,17 @@ CardFit begun(const CardInput &input) {
     return fit;
 }
 
+// The orientation that turns the pictures to the frame of the sensor; 0: unknown.
+uint16_t turn_of(const CardInput &input) {
+    const lensprof_flat_image &frame = input.images.front();
+    return sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
+}
+
 // The profile in the frame of the sensor.
-std::shared_ptr<lensprof_profile> sensor_profile(const CardInput &input, const lensprof_flat &flat, Events &events) {
+std::shared_ptr<lensprof_profile> sensor_profile(const CardInput &input, const lensprof_flat &flat, uint16_t turn,
+                                                 Events &events) {
     std::shared_ptr<lensprof_profile> profile = profile_of(flat);
     profile->key = input.key;
-    const lensprof_flat_image &frame = input.images.front();
-    const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
     if (!turn)
         events.note(input.files.front(),
                     "no orientation states which way this portrait picture was rotated: the profile "
@@ -113,7 +118,9 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
     for (size_t i = 0; i < input.pictures.size() && !found.fit.usable; i++)
         found.shows_even_light.push_back(shows_even_light(input.pictures[i]));
     add_advice(o, input, found, events);
-    found.profile = sensor_profile(input, *flat, events);
+    const uint16_t turn = turn_of(input);
+    found.is_turn_unknown = !turn;
+    found.profile = sensor_profile(input, *flat, turn, events);
     return found;
 }
 

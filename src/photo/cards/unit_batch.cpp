@@ -215,6 +215,10 @@ std::vector<MeasuredUnit> measured_units(const std::vector<MeasuredSetting> &set
         const MeasuredSetting &setting = settings[result.setting];
         if (!setting.is_good()) {
             result.reason = setting.refusal;
+        } else if (setting.fit->is_turn_unknown) {
+            result.reason =
+                "its pictures are higher than wide, and no orientation states how they were rotated: its "
+                "centre is unknown; give the pictures as the camera wrote them";
         } else if (std::fabs(std::log(shape_of(*setting.fit) / batch.lattice.aspect)) > same_shape) {
             result.reason = "its frame has another shape than that of the other units";
         } else {
