@@ -103,9 +103,9 @@ static inline const uint32_t *lp_columns_inside(const lensprof_plan *plan, uint3
 }
 
 /* The kernels. Each gives the same bytes. */
-lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;
+lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_gathers, lp_row_neon;
 
-/* The fastest kernel that this processor supports, with at most `lanes` lanes, 0 = any. */
+/* The fastest kernel that this processor supports, with at most `lanes` lanes, 0 = any. lp_row_gathers only with 0. */
 lp_row_kernel *lp_row_best(uint32_t lanes);
 
 #endif

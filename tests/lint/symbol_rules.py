@@ -98,7 +98,7 @@ def check_core(nm, archive):
 # Objects that apply a profile, without the rest of the core. The first set prepares plans and may use a few functions.
 APPLY_PATH = {"apply", "apply_packed", "base", "best", "blob", "fixed", "fixed_open", "fixed_packed", "fixed_plan",
               "fixed_table", "levels", "gain_grid", "image", "image_circle", "options", "packed", "plan", "plan_curves", "profile", "response",
-              "readout", "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "sensor", "sensor_error", "sensor_flat",
+              "readout", "row_avx2", "row_avx512", "row_gathers", "row_neon", "row_scalar", "row_sse41", "sensor", "sensor_error", "sensor_flat",
               "sensor_flat_fit", "sensor_open", "sensor_packed", "sensor_plan", "vignetting"}
 # log: newlib implements log2 with it.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",

@@ -11,6 +11,15 @@ static uint32_t saved_state(void) {
     return low;
 }
 
+/* Intel's processors with AVX-512 and arithmetic in half precision: Sapphire Rapids and later. Microcode against leaks
+ * (Gather Data Sampling) slows down the gathers of earlier ones, and those of AMD Zen 4 take twice as long as loads. */
+static int has_fast_gathers(void) {
+    const uint32_t avx512_fp16 = 1u << 23;
+    uint32_t a, b, c, d;
+    return __get_cpuid(0, &a, &b, &c, &d) && b == signature_INTEL_ebx && __get_cpuid_count(7, 0, &a, &b, &c, &d)
+           && (d & avx512_fp16);
+}
+
 static uint32_t most_lanes(void) {
     enum {
         SSE41 = 1 << 19,
@@ -29,6 +38,7 @@ static uint32_t most_lanes(void) {
 lp_row_kernel *lp_row_best(uint32_t lanes) {
     uint32_t max_lanes = most_lanes();
     if (lanes && lanes < max_lanes) max_lanes = lanes;
+    if (!lanes && max_lanes == 16 && has_fast_gathers()) return lp_row_gathers;
     return max_lanes >= 16  ? lp_row_avx512
            : max_lanes >= 8 ? lp_row_avx2
            : max_lanes >= 4 ? lp_row_sse41

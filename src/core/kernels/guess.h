@@ -9,15 +9,6 @@
 #define COUNT_LOST(lost, count) ((void)0) /* tests count the values of a run that are not found */
 #endif
 
-/* The address may be past the end of the row, where a pointer would be undefined. */
-static inline void fetch_ahead(const float *values, uint32_t ahead) {
-#if defined(__GNUC__)
-    __builtin_prefetch((const void *)((uintptr_t)values + ahead * sizeof *values));
-#else
-    (void)values, (void)ahead;
-#endif
-}
-
 /* Float values through one table in both directions, as in values_to_light in tables.h. */
 static int is_guessable(const lensprof_plan *plan) {
     return plan->source_sample == LENSPROF_SAMPLE_F32 && plan->target_sample == LENSPROF_SAMPLE_F32 && plan->curves == 1
@@ -86,7 +77,7 @@ static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
         values = light;
     }
     for (uint32_t i = 0; i < count; i += LANES) {
-        fetch_ahead(values, i + 3 * STRIP); /* of the next strip: this stage loads the least */
+        fetch_ahead(r, i * sizeof *values); /* this stage loads the least */
         i_store(place + i, guess_place(guess, f_load(values + i)));
     }
     for (uint32_t i = 0; i < count; i += LANES) {

@@ -89,12 +89,16 @@ static inline __m512 join(__m128 a, __m128 b, __m128 c, __m128 d) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
 }
 static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+#ifdef FAST_GATHERS
+    f_gather_pair(base, i_load(at), first, second);
+#else
     const __m512 a =
         join(two_pairs(base, at), two_pairs(base, at + 4), two_pairs(base, at + 8), two_pairs(base, at + 12));
     const __m512 b =
         join(two_pairs(base, at + 2), two_pairs(base, at + 6), two_pairs(base, at + 10), two_pairs(base, at + 14));
     *first = _mm512_shuffle_ps(a, b, 0x88);
     *second = _mm512_shuffle_ps(a, b, 0xdd);
+#endif
 }
 static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
     __m512 row[4];
@@ -135,7 +139,11 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
 }
 
 /* A line of 64 bytes past the caches; `to` is aligned to it. */
+#ifdef FAST_GATHERS
+#define CAN_STREAM 0
+#else
 #define CAN_STREAM 1
+#endif
 static inline void stream_line(uint8_t *to, const uint8_t *from) {
     _mm512_stream_si512((__m512i *)(void *)to, _mm512_loadu_si512(from));
 }

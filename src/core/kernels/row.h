@@ -156,7 +156,11 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s) {
 ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, int has_levels,
                              uint32_t at, const uint8_t *from) {
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
-    lane_f light = load_values(sample, from);
+    lane_f light;
+    if (curve == LP_CURVE_TABLE)
+        light = light_of_codes(plan, s, at, sample == LENSPROF_SAMPLE_U8 ? i_load_u8(from) : i_load_u16(from));
+    else
+        light = load_values(sample, from);
     (void)has_levels;
 #if LP_HAS_LEVELS
     if (has_levels) { /* linear, and the spans are 1 */
@@ -164,8 +168,9 @@ ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t
         return f_add(light, f_set(plan->levels.black_out[0]));
     }
 #endif
-    if (curve != LP_CURVE_NONE) light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
+    if (curve == LP_CURVE_POWER) light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
     light = f_mul(light, f_load(s->factor + at));
+    if (curve == LP_CURVE_TABLE) light = f_max(light, f_set(0.0f)); /* lanes past the run have any factor */
     return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, is_light, at, light);
 }
 
@@ -178,6 +183,7 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     uint32_t i = 0;
     local_plan.curves = 1, local_plan.dither = 0, local_plan.encode = curve;
     for (; i + LANES <= r->count; i += LANES) {
+        if (FETCHES_TARGET || (CAN_STREAM && sample == LENSPROF_SAMPLE_F32)) fetch_ahead(r, i * bytes);
         const lane_f light = through(plan, s, sample, curve, has_levels, r->at + i, r->from + i * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, light, r->to + i * bytes);
     }
@@ -219,8 +225,15 @@ static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
         one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER, 0);
         return 1;
     case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE, 0); return 1;
+#ifdef FAST_GATHERS
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_TABLE, 0); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE:
+        one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_TABLE, 0);
+        return 1;
+#else
     case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE:
     case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE:
+#endif
     case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE:
         if (plan->step) return 0;
         through_tables(plan, r, s);

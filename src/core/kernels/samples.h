@@ -67,8 +67,7 @@ ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t cou
 }
 
 /* Light of codes from the table of all codes. */
-ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_f codes) {
-    lane_i code = i_of_f(codes);
+ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_i code) {
     if (plan->curves == 3) {
         const lane_i channel = i_load(s->channel + at);
         code = i_add(code, plan->inverse_shift == 8 ? i_left(channel, 8) : i_left(channel, 16));
@@ -78,7 +77,7 @@ ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, u
 
 static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uint32_t count) {
     for (uint32_t i = at; i < at + count; i += LANES)
-        f_store(s->light + i, light_of_codes(plan, s, i, f_load(s->light + i)));
+        f_store(s->light + i, light_of_codes(plan, s, i, i_of_f(f_load(s->light + i))));
 }
 
 /* ---- light to samples ---- */

@@ -52,3 +52,21 @@ typedef struct run {
     uint8_t *to;
     uint32_t at, count;
 } run;
+
+#ifdef FAST_GATHERS
+#define FETCHES_TARGET 1 /* lines are fetched to be written, which streams do not need */
+#else
+#define FETCHES_TARGET 0
+#endif
+
+/* Fetches a line of samples to be read soon, those of the next strip if pixels are three floats, and the line to write
+ * them to. The addresses may be past the end of a row, where a pointer would be undefined. */
+ALWAYS_INLINE void fetch_ahead(const run *r, size_t byte) {
+#if defined(__GNUC__)
+    const size_t ahead = byte + 3 * STRIP * sizeof(float);
+    __builtin_prefetch((const void *)((uintptr_t)r->from + ahead));
+    if (FETCHES_TARGET) __builtin_prefetch((const void *)((uintptr_t)r->to + ahead), 1);
+#else
+    (void)r, (void)byte;
+#endif
+}
