@@ -1,4 +1,4 @@
-/* AVX-512 where gathers are as fast as single loads and stores past the caches are slow (best.c). */
+/* AVX-512 where gathers are faster than single loads and stores past the caches are slow (best.c). */
 #define FAST_GATHERS
 #include "core/kernels/lanes_avx512.h"
 
