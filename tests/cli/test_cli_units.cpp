@@ -16,9 +16,11 @@ constexpr uint32_t width = 128, height = 96;
 
 struct Module {
     double k1 = -0.45, centre_x = 0.0, centre_y = 0.0;
-    double tilt = 0.0;    // slope of the light to the right, share per half diagonal
-    double corner = 0.0;  // what k3 takes off
-    double blue = 0.0;    // k1 of blue less that of green
+    double tilt = 0.0;     // slope of the light to the right, share per half diagonal
+    double corner = 0.0;   // what k3 takes off
+    double blue = 0.0;     // k1 of blue less that of green
+    double covered = 0.0;  // share of the width at the left without light
+    double circle = 9.0;   // radius of its light, half diagonals
     uint32_t layout = LENSPROF_LAYOUT_RGB;
     const char *camera = "Cam 7";
 };
@@ -39,8 +41,9 @@ void shoot(const std::string &name, const Module &module, uint64_t seed) {
                 const lensprof_vignetting falloff = falloff_of(module, c);
                 const double r2 = lensprof_vignetting_r2(&falloff, width, height, x, y, nullptr),
                              right = (x - 0.5 * (width - 1.0)) / lensprof_half_diagonal(width, height);
-                const double light =
-                    0.6 * lensprof_vignetting_eval(&falloff, r2, nullptr) * (1.0 + module.tilt * right);
+                const bool is_lit = x >= module.covered * width && r2 <= module.circle * module.circle;
+                const double light = 0.6 * lensprof_vignetting_eval(&falloff, r2, nullptr) * (1.0 + module.tilt * right)
+                                     * (is_lit ? 1.0 : 0.01);
                 *at++ = static_cast<uint16_t>(std::lround(65535.0 * (light + 0.001 * lp_normal(&random))));
             }
     PictureMetadata metadata = unknown_metadata();
@@ -254,17 +257,34 @@ void test_middles(void **) {
 
 }  // namespace
 
+// What is left out of a fit as black is no light that a unit has: the fit continues the falloff there.
+void test_covered_units(void **) {
+    Module covered, circle;
+    covered.covered = 0.12, circle.circle = 0.7;
+    const std::string folder = make_units("covered", 8, {{0, circle}, {5, covered}}), db = in_folder("covered.db");
+    const Json json = parsed(must_exit(not_usable, units_of(folder, {"--units", "by=folder", "--db", db, "--json"})));
+    const Json &batch = json["batches"][0];
+    for (const char *name : {"u00", "u05"}) {
+        const Json unit = unit_named(batch, name);
+        assert_true(unit["verdict"] == "fail" && contains(unit["reason"].get<std::string>(), "covered"));
+        assert_true(unit["unseen"].get<double>() > 0.08);
+    }
+    for (const char *name : {"u01", "u02", "u03", "u04", "u06", "u07"})
+        assert_true(unit_named(batch, name)["verdict"] == "pass");
+    const std::string shown = must_exit(0, {"profile", "show", "1", "--db", db});
+    assert_true(contains(shown, "flat") && !contains(shown, "image circle"));
+    const Json alone = parsed(must_exit(
+        not_usable, units_of(folder, {"--units", "by=folder,against=1", "--db", db, "--no-store", "--json"})));
+    for (const char *name : {"u00", "u05"}) assert_true(unit_named(alone["batches"][0], name)["verdict"] == "fail");
+}
+
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_a_line),
-        CLI_TEST(test_few_units),
-        CLI_TEST(test_one_light_for_all),
-        CLI_TEST(test_rotated_pictures),
-        CLI_TEST(test_types_are_not_mixed),
-        CLI_TEST(test_unknown_units),
-        CLI_TEST(test_units_by_folder_and_serial),
-        CLI_TEST(test_units_by_name),
-        CLI_TEST(test_middles),
+        CLI_TEST(test_a_line),           CLI_TEST(test_covered_units),
+        CLI_TEST(test_few_units),        CLI_TEST(test_one_light_for_all),
+        CLI_TEST(test_rotated_pictures), CLI_TEST(test_types_are_not_mixed),
+        CLI_TEST(test_unknown_units),    CLI_TEST(test_units_by_folder_and_serial),
+        CLI_TEST(test_units_by_name),    CLI_TEST(test_middles),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -29,9 +29,11 @@ CardOptions options_of_units(const CardOptions &o) {
 
 void store_units(const CardOptions &o, UnitCards &cards) {
     for (UnitBatch &batch : cards.batches) {
-        if (!batch.mean || cards.options.against || (!batch.count(UnitVerdict::pass) && !o.store.force)) continue;
+        const size_t pass = batch.count(UnitVerdict::pass), fail = batch.count(UnitVerdict::fail);
+        const bool is_good = pass > 0 && pass >= fail;  // else they may be of two types
+        if (!batch.mean || cards.options.against || (!is_good && !o.store.force)) continue;
         const std::string &first = cards.setting_of(batch.units.front()).of.pictures.front().file;
-        batch.profile_id = store_profile(o.store, *batch.mean, {"flat", first, batch.count(UnitVerdict::pass) > 0});
+        batch.profile_id = store_profile(o.store, *batch.mean, {"flat", first, is_good});
     }
     if (!cards.options.stores_each) return;
     for (const UnitBatch &batch : cards.batches)

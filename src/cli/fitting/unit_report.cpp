@@ -140,7 +140,7 @@ std::string csv_row(const UnitCards &cards, const UnitResult &unit) {
         row += cells_of(*difference);
     row += "," + csv_number(unit.frame_at[0]) + "," + csv_number(unit.frame_at[1]);
     row += "," + (setting.fit ? std::to_string(setting.fit->fit.spots) : std::string());
-    return row + "," + csv_cell(unit.reason) + "\n";
+    return row + "," + csv_number(unit.unseen) + "," + csv_cell(unit.reason) + "\n";
 }
 
 Json difference_json(const Difference &difference) {
@@ -160,6 +160,7 @@ Json unit_json(const UnitCards &cards, const UnitResult &unit) {
             {"frame", difference_json(unit.frame)},
             {"frame_at", {number_or_null(unit.frame_at[0]), number_or_null(unit.frame_at[1])}},
             {"color", difference_json(unit.color)},
+            {"unseen", number_or_null(unit.unseen)},
             {"result", setting.fit ? flat_json(*setting.fit) : Json()}};
 }
 
@@ -227,7 +228,7 @@ std::string units_csv(const UnitCards &cards) {
         "unit,camera,lens,focal_mm,aperture,pictures,verdict,corner,corner_sigma,corner_red,corner_red_sigma,"
         "corner_blue,corner_blue_sigma,center_x,center_x_sigma,center_y,center_y_sigma,difference_corner,"
         "difference_corner_sigma,difference_center,difference_center_sigma,difference_frame,difference_frame_sigma,"
-        "difference_color,difference_color_sigma,frame_at_x,frame_at_y,dust,reason\n";
+        "difference_color,difference_color_sigma,frame_at_x,frame_at_y,dust,unseen,reason\n";
     for (const UnitBatch &batch : cards.batches)
         for (const UnitResult &unit : batch.units) text += csv_row(cards, unit);
     return text;

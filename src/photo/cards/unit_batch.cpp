@@ -28,7 +28,13 @@ double corner_light(const Shading &shading, const Lattice &lattice) {
 struct Usual {
     Shading shading;  // sigma: of the light, relative
     Middle corner, centre[2];
+    double cells = NAN;  // that a shot of a unit has; NAN: a stated profile, which does not tell
+    bool has_circle = false;
 };
+
+double cells_per_shot(const MeasuredUnit &unit) {
+    return static_cast<double>(unit.fit->fit.cells) / std::max(1u, unit.fit->fit.shots);
+}
 
 // Width over height of the frame, in which profiles are: that of the sensor, which is not higher than wide.
 double shape_of(const CardFit &fit) { return std::max(fit.aspect, 1.0 / fit.aspect); }
@@ -49,6 +55,7 @@ Usual median_unit(const std::vector<MeasuredUnit> &units, const std::vector<bool
             usual.shading.sigma[c].push_back(light.sigma / light.median);
         }
     usual.corner = over_units([](const MeasuredUnit &unit) { return unit.corner; });
+    usual.cells = over_units([](const MeasuredUnit &unit) { return cells_per_shot(unit); }).median;
     for (int axis = 0; axis < 2; axis++)
         usual.centre[axis] =
             over_units([axis](const MeasuredUnit &unit) { return unit.fit->profile->vignetting[0].center[axis]; });
@@ -62,6 +69,7 @@ Usual usual_of(const lensprof_profile &reference, const Lattice &lattice) {
     for (std::vector<double> &sigma : usual.shading.sigma) std::fill(sigma.begin(), sigma.end(), 0.0);
     usual.corner = {corner_light(usual.shading, lattice), 0.0, 0.0};
     for (int axis = 0; axis < 2; axis++) usual.centre[axis] = {reference.vignetting[0].center[axis], 0.0, 0.0};
+    usual.has_circle = reference.image_circle.radius > 0.0;
     return usual;
 }
 
@@ -122,8 +130,28 @@ void compare_centre(const MeasuredUnit &unit, const Usual &usual, UnitResult &re
     result.center = {std::sqrt(square), square > 0.0 ? std::sqrt(variance / square) : result.centre_sigma[0]};
 }
 
-void judge(const UnitLimits &limits, UnitResult &result) {
+// Cells that are black, saturated or beyond an edge, and large spots, are left out of the fit, which continues the
+// falloff there: a covered lens would pass. Without other units, what the fit of this one states.
+double unseen_share(const MeasuredUnit &unit, const Usual &usual) {
+    if (std::isfinite(usual.cells)) return std::max(0.0, 1.0 - cells_per_shot(unit) / usual.cells);
+    const CardFit &fit = *unit.fit;
+    double share = usual.has_circle ? 0.0 : fit.fit.edge_share, spots = 0.0;
+    for (const lensprof_flat_image_quality &quality : fit.quality)
+        share = std::max({share, quality.black_share, quality.white_share});
+    const uint32_t *card = fit.quality.front().card;
+    for (uint32_t n = 0; n < std::min<uint32_t>(fit.fit.spots, LENSPROF_FLAT_SPOTS); n++)
+        spots += 3.14159265 * fit.fit.spot[n].radius * fit.fit.spot[n].radius;
+    return share + spots / (static_cast<double>(card[2]) * card[3]);
+}
+
+void judge(const UnitLimits &limits, const Usual &usual, UnitResult &result) {
     std::vector<std::string> exceeded;
+    if (result.unseen > UnitLimits::unseen)
+        exceeded.push_back(
+            format("%.1f %% of the frame is black, saturated, covered or dirty, more than of other units (limit %g %%)",
+                   100.0 * result.unseen, 100.0 * UnitLimits::unseen));
+    if (std::isnan(result.corner.value) && std::isfinite(usual.corner.median))
+        exceeded.push_back("corner without light");
     const auto compare = [&](const char *name, const Difference &difference, double limit, const std::string &place) {
         if (!(std::fabs(difference.value) > limit)) return;
         exceeded.push_back(format("%s %+.2f +- %.2f %%%s (limit %g %%)", name, 100.0 * difference.value,
@@ -144,7 +172,8 @@ void compare(const std::vector<MeasuredUnit> &units, const Usual &usual, const U
         compare_frame(unit, usual, batch.lattice, result);
         compare_corner(unit, usual, result);
         compare_centre(unit, usual, result);
-        judge(limits, result);
+        result.unseen = unseen_share(unit, usual);
+        judge(limits, usual, result);
     }
     batch.usual = usual.shading;
 }

@@ -14,6 +14,7 @@ namespace lensprof {
 struct UnitLimits {
     double corner = 0.03, frame = 0.05, color = 0.02;  // of the light
     double center = 0.03;                              // half diagonals
+    static constexpr double unseen = 0.01;             // of the frame
 };
 
 struct Difference {
@@ -37,6 +38,7 @@ struct UnitResult {
     Difference color;    // the largest of red over green and blue over green; unknown for pictures of one curve
     double frame_at[2] = {NAN, NAN};                              // place of `frame`, shares of width and height
     double centre[2] = {NAN, NAN}, centre_sigma[2] = {NAN, NAN};  // of the unit, half diagonals
+    double unseen = NAN;  // share of the frame without light that the others have, or that was left out; NAN: unknown
     std::vector<double> map;  // green at each place of the lattice, relative; empty if it was not compared
 };
 

@@ -87,6 +87,7 @@ void set_levels_and_circle(const std::vector<const CardFit *> &units, lensprof_p
         profile.levels.black[c] = median([c](const lensprof_profile &p) { return p.levels.black[c]; });
     profile.levels.white = median([](const lensprof_profile &p) { return p.levels.white; });
     const auto has_circle = [](const CardFit *unit) { return unit->profile->image_circle.radius > 0.0; };
+    profile.image_circle = {};
     if (!std::all_of(units.begin(), units.end(), has_circle)) return;
     profile.image_circle.radius = median([](const lensprof_profile &p) { return p.image_circle.radius; });
     for (int axis = 0; axis < 2; axis++)
