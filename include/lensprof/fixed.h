@@ -52,7 +52,8 @@ LENSPROF_API size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *opti
 
 /* Prepares a plan in memory[size] (4-byte aligned, owned by the caller, must outlive the plan). Errors: as
  * lensprof_plan_init; UNSUPPORTED for formats and options not listed above, and for a falloff whose |k1| + |k2| + |k3|,
- * each times its power of the largest radius in the frame, exceeds 500, which the integers cannot represent. */
+ * each times its power of the largest radius in the frame, exceeds 500, which the integers cannot represent. M, times a
+ * gain grid, counts as 0.0005 if it is less. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_init(void *memory, size_t size,
                                                                         const lensprof_apply_options *options,
                                                                         const lensprof_fixed_plan **plan,

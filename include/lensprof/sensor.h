@@ -1,6 +1,6 @@
 /* lensprof/sensor.h - samples as a raw sensor delivers them, corrected in integers by a grid of gains.
  *
- * Example: packed rows of 10 bits of a sensor that bins 2 x 2, corrected in place.
+ * Example: packed rows of 10 bits of a sensor that bins 2 x 2, corrected in place; the profile has its levels.
  *
  *     static uint32_t memory[1024];
  *     static uint8_t sensor[480 * 640 * 5 / 4];
@@ -53,7 +53,7 @@ typedef enum lensprof_flip {
 /* Codes without light and at saturation, per plane of the mosaic. Frozen value struct. */
 typedef struct lensprof_sensor_levels {
     double black[LENSPROF_SENSOR_PLANES]; /* may have fractions; -32768..65535 */
-    double white;                         /* more than each black by at least 1; up to 65535 */
+    double white;                         /* 1..65535, and more than each black by at least 1 */
 } lensprof_sensor_levels;
 
 /* What a sensor reads of its frame. The window is x..x + width step - 1, y..y + height step - 1 of the frame, whichever
@@ -73,7 +73,8 @@ typedef struct lensprof_readout {
                                frame, node (0, 0) at its first pixel, the last at its last; each within
                                0.001..1000. NULL = none; read during plan init only */
     const lensprof_sensor_levels *levels;        /* of the input; NULL = those of the options or the blob, if any */
-    const lensprof_sensor_levels *output_levels; /* NULL = `levels`: black is put back */
+    const lensprof_sensor_levels *output_levels; /* NULL = `levels`: black is put back; those of
+                                                    the options if `levels` is NULL, too */
 } lensprof_readout;
 
 /* The whole frame, one plane (channel green), a grid of 17 x 13. */
@@ -104,7 +105,7 @@ LENSPROF_API size_t lensprof_sensor_plan_bytes(const lensprof_readout *readout);
  * the readout has its own. Levels of the options are shares of 65535. If `saturated` is NEUTRAL and there are two
  * planes or more, output is clipped at the level of a saturated sample of the plane and node with the smallest gain, if
  * that is below white, so that clipped highlights keep no cast. Errors: as lensprof_plan_init; SIZE for sides above
- * 65535, a window outside of the frame, another grid, and cells of less than a pattern or more than 4096 samples of a
+ * 65535, a window outside of the frame, another grid, and cells of less than a pattern or more than 1024 samples of a
  * colour; ARGUMENT for levels out of range; VIGNETTING for gains that are not within 0.001..1000; UNSUPPORTED for a
  * response that is not linear (state LINEAR input and output of linear samples), an image circle, dither, and gains of
  * 4096 or more in all. */
@@ -115,7 +116,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_plan_init(void *m
                                                                          lensprof_error *error);
 
 /* The largest relative error of the gains of a plan's nodes, interpolated, against the options' own: over the readout,
- * at 8 x 8 positions per cell. The options and readout are those from which the plan was made. Errors: as
+ * at about 8 x 8 positions per cell. The options and readout are those from which the plan was made. Errors: as
  * lensprof_sensor_plan_init; ARGUMENT for a plan of another readout. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_plan_error(const lensprof_sensor_plan *plan,
                                                                           const lensprof_apply_options *options,
@@ -173,13 +174,15 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_flat_init(void *m
                                                                          lensprof_error *error);
 
 /* Adds a tile of U16 samples, layout GREY, whose first sample is sample (x0, y0) of the readout, in integers. All
- * samples must be added equally often, at most 256 times: rows of one or more pictures of the same light, as they
- * arrive. Errors: as lensprof_sensor_apply; CAPACITY if pictures are too many. Nothing is added then. */
+ * samples must be added equally often, up to 256 times (cells of more than 2^22 samples: fewer): rows of one or more
+ * pictures of the same light, as they arrive. Errors: as lensprof_sensor_apply; CAPACITY for more pictures. Nothing is
+ * added then. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_flat_add(lensprof_sensor_flat *flat,
                                                                         const lensprof_image *samples, uint32_t x0,
                                                                         uint32_t y0);
 
-/* Opens a copy of the memory of a flat field in data[size] (8-byte aligned). Errors: as lensprof_sensor_plan_open. */
+/* Opens a copy of the memory of a flat field in data[size] (8-byte aligned). Errors: as lensprof_sensor_plan_open, but
+ * there is no CRC: CORRUPT for numbers that no flat field has, and damaged sums are not detected. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_flat_open(void *data, size_t size,
                                                                          lensprof_sensor_flat **flat);
 
@@ -189,8 +192,9 @@ LENSPROF_API size_t lensprof_sensor_flat_work_bytes(const lensprof_sensor_flat *
 /* The gains that make the flat field even, for lensprof_readout: gains[plane][row][column], 1 where a plane is
  * brightest. The light at the nodes is the bilinear surface nearest to the samples (least squares, by conjugate
  * gradients in double precision). Errors: ARGUMENT for NULL; CAPACITY for too little work memory; NO_SAMPLES if samples
- * were not added equally often, more than 0.1 % of them are saturated, a plane has less than 1/64 of white, or the
- * window leaves nodes without samples; gains are not written then. */
+ * were not added equally often, more than 0.1 % of them are saturated, the brightest node of a plane has less than
+ * 1/64 of white less black, another less than 1/1000 of the brightest, or the window leaves nodes without samples;
+ * gains are not written then. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sensor_flat_gains(const lensprof_sensor_flat *flat, void *work,
                                                                           size_t work_bytes, float *gains,
                                                                           lensprof_error *error);

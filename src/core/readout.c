@@ -84,7 +84,7 @@ static lensprof_status validate_size(lensprof_readout *r, uint32_t width, uint32
     if (!take_window(width, r->x, r->step, &r->width) || !take_window(height, r->y, r->step, &r->height))
         return lp_fail(error, LENSPROF_ERROR_SIZE, "the readout is not in the frame, or a side is over 65535");
     if (!are_cells_sound(width, r->columns, stride) || !are_cells_sound(height, r->rows, stride))
-        return lp_fail(error, LENSPROF_ERROR_SIZE, "grid: 2..33 nodes a side, 1..4096 patterns a cell");
+        return lp_fail(error, LENSPROF_ERROR_SIZE, "grid: 2..33 nodes a side, 1..1024 patterns a cell");
     const uint32_t nodes = r->gains ? lp_readout_planes(r) * r->columns * r->rows : 0;
     for (uint32_t i = 0; i < nodes; i++)
         if (!lp_is_attenuation(r->gains[i])) return lp_fail(error, LENSPROF_ERROR_VIGNETTING, "gains: 0.001..1000");
@@ -115,7 +115,7 @@ lensprof_status lp_readout_take(lensprof_readout *r, const lensprof_readout *giv
 }
 
 lensprof_status lp_sensor_levels_validate(const lensprof_sensor_levels *levels) {
-    if (!(levels->white <= 65535.0)) return LENSPROF_ERROR_ARGUMENT;
+    if (!(levels->white >= 1.0 && levels->white <= 65535.0)) return LENSPROF_ERROR_ARGUMENT;
     for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++)
         if (!(levels->black[p] >= -32768.0 && levels->white - levels->black[p] >= LEAST_SPAN))
             return LENSPROF_ERROR_ARGUMENT;

@@ -13,20 +13,21 @@ typedef struct constants {
 } constants;
 
 static constants constants_of(const lensprof_sensor_plan *plan, uint32_t plane) {
-    const int64_t one = (int64_t)1 << plan->grid.shift;
+    const int64_t one = (int64_t)1 << plan->shift[plane];
     return (constants){plan->black_out[plane] * one + (one << (LP_SENSOR_LEVEL_SHIFT - 1)), plan->black_in[plane],
-                       plan->largest[plane], plan->grid.shift - LP_SENSOR_LEAST_SHIFT, plan->grid.side};
+                       plan->largest[plane], plan->shift[plane] - LP_SENSOR_LEAST_SHIFT, plan->grid.side};
 }
 
 /* black' + (B - black) G, clipped, for samples of one plane in one cell; G rises by `rise` from sample to sample. */
 static void correct_cell(const constants *of, const uint16_t *from, uint16_t *to, uint32_t count, int32_t gain,
                          int32_t rise) {
     const uint32_t side = of->side, largest = of->largest;
-    for (; count; count--, from += side, to += side, gain += rise) {
+    for (; count; count--, from += side, to += side) {
         const int32_t light = (int32_t)((uint32_t)*from << LP_SENSOR_LEVEL_SHIFT) - of->black;
         int32_t code = (int32_t)((of->base + (int64_t)light * gain) >> 32) >> of->shift;
         if ((uint32_t)code > largest) code = code < 0 ? 0 : (int32_t)largest;
         *to = (uint16_t)code;
+        gain = (int32_t)((uint32_t)gain + (uint32_t)rise); /* after the last one it may overflow */
     }
 }
 

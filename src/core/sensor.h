@@ -14,7 +14,7 @@
 #define LP_SENSOR_LARGEST_SHIFT 29
 #define LP_SENSOR_LARGEST_NODE ((1u << 30) - 1)
 #define LP_SENSOR_LARGEST_SIDE 65535u /* px of the frame */
-#define LP_SENSOR_LARGEST_CELL 4096u  /* samples of a colour: gains are added up, with an error of 1/2 unit each */
+#define LP_SENSOR_LARGEST_CELL 1024u  /* samples of a colour: gains are added up, with an error of 1/2 unit each */
 
 /* Positions along an axis, in units of which `whole` lie between two nodes: sample i is at first + i step. */
 typedef struct lp_sensor_axis {
@@ -26,8 +26,8 @@ typedef struct lp_sensor_axis {
 typedef struct lp_sensor_grid {
     uint32_t width, height; /* samples of a row, and rows */
     uint8_t side, planes;
-    uint8_t flip;  /* lensprof_flip: nodes count from the end of the frame at which reading begins */
-    uint8_t shift; /* of a plan: gains are in units of 2^-shift; else 0 */
+    uint8_t flip; /* lensprof_flip: nodes count from the end of the frame at which reading begins */
+    uint8_t reserved;
     uint8_t plane[16];
     uint32_t columns, rows;
     lp_sensor_axis axis[2]; /* across, down */
@@ -39,6 +39,8 @@ struct lensprof_sensor_plan {
     lp_sensor_grid grid;
     int32_t black_in[LENSPROF_SENSOR_PLANES], black_out[LENSPROF_SENSOR_PLANES];
     uint32_t largest[LENSPROF_SENSOR_PLANES]; /* code at which the output is clipped */
+    int32_t white_in, white_out;              /* levels of a plan, to compare plans with */
+    uint8_t shift[LENSPROF_SENSOR_PLANES];    /* gains of a plane are in units of 2^-shift */
     /* uint32_t node[planes][rows][columns] */
 };
 

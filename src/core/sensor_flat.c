@@ -50,6 +50,7 @@ lensprof_status lensprof_sensor_flat_open(void *data, size_t size, lensprof_sens
     memcpy(levels.black, flat->black, sizeof levels.black);
     levels.white = flat->white;
     if (!lp_sensor_grid_is_sound(&flat->grid) || lp_sensor_levels_validate(&levels) != LENSPROF_OK
+        || flat->samples > (uint64_t)flat->grid.width * flat->grid.height * LP_FLAT_MOST_PICTURES
         || flat->bytes != bytes_of(flat->grid.planes * lp_sensor_grid_nodes(&flat->grid)))
         return LENSPROF_ERROR_CORRUPT;
     *result = flat;
@@ -112,7 +113,7 @@ lensprof_status lensprof_sensor_flat_add(lensprof_sensor_flat *flat, const lensp
     const lensprof_status status = lp_tile_validate(&tiles, samples, samples, x0, y0);
     if (status != LENSPROF_OK) return status;
     const uint64_t more = (uint64_t)samples->width * samples->height;
-    if (flat->samples + more > (uint64_t)grid->width * grid->height * LP_FLAT_MOST_PICTURES)
+    if (flat->samples + more > (uint64_t)grid->width * grid->height * lp_flat_most_pictures(grid))
         return LENSPROF_ERROR_CAPACITY;
     for (uint32_t y = 0; y < samples->height; y++) {
         const uint16_t *row =
@@ -122,5 +123,6 @@ lensprof_status lensprof_sensor_flat_add(lensprof_sensor_flat *flat, const lensp
         flat->saturated += count_saturated(flat, row, samples->width);
     }
     flat->samples += more;
+    lp_flat_add_moments(flat->moments, x0, y0, samples->width, samples->height);
     return LENSPROF_OK;
 }

@@ -12,7 +12,8 @@
 #define SIDE LENSPROF_SENSOR_GRID_SIDE
 #define MOST_STEPS 200
 #define CLOSE 1e-10            /* of the residual, relative to b */
-#define LEAST_LIGHT (1.0 / 64) /* of white */
+#define LEAST_LIGHT (1.0 / 64) /* of white less black, where a plane is brightest */
+#define LARGEST_GAIN 1000.0    /* as readouts allow */
 #define LEAST_SHARE 0.125      /* of the samples of the best node */
 
 /* Sums over the samples of an axis at one place of the pattern: w_i^2, and w_i w_(i + 1). */
@@ -120,12 +121,12 @@ static const char *fit_plane(const lensprof_sensor_flat *flat, uint32_t plane, s
     if (!have_samples(s, extra, product, count)) return "the window leaves nodes of the grid without samples";
     for (uint32_t i = 0; i < count; i++) r[i] = (double)sums[i] * LP_FLAT_ONE * LP_FLAT_ONE / pictures;
     if (!solve(s, light, r, p, product, count)) return "the flat field cannot be fitted";
-    const double span = flat->white - flat->black[plane];
-    for (uint32_t i = 0; i < count; i++) {
-        light[i] -= flat->black[plane];
-        if (!(light[i] > LEAST_LIGHT * LEAST_LIGHT * span)) return "the flat field is black in a part of the frame";
-    }
-    return largest_of(light, count) < LEAST_LIGHT * span ? "the flat field is dark: expose more" : NULL;
+    for (uint32_t i = 0; i < count; i++) light[i] -= flat->black[plane];
+    const double largest = largest_of(light, count);
+    if (!(largest >= LEAST_LIGHT * (flat->white - flat->black[plane]))) return "the flat field is dark: expose more";
+    for (uint32_t i = 0; i < count; i++)
+        if (!(light[i] * LARGEST_GAIN >= largest)) return "the flat field is black in a part of the frame";
+    return NULL;
 }
 
 /* Gains in the frame's order: a flipped readout counts its nodes from the other end. */
@@ -141,7 +142,11 @@ static void write_gains(const lp_sensor_grid *grid, const double *light, float *
 
 static const char *wrong_with(const lensprof_sensor_flat *flat) {
     const uint64_t picture = (uint64_t)flat->grid.width * flat->grid.height;
-    if (!flat->samples || flat->samples % picture) return "samples are missing: each must be added equally often";
+    uint64_t whole[LP_FLAT_MOMENTS] = {0};
+    lp_flat_add_moments(whole, 0, 0, flat->grid.width, flat->grid.height);
+    for (int m = 0; m < LP_FLAT_MOMENTS; m++) whole[m] *= flat->samples / picture;
+    if (!flat->samples || flat->samples % picture || memcmp(whole, flat->moments, sizeof whole))
+        return "samples are missing: each must be added equally often";
     if (flat->saturated > flat->samples / 1000) return "the flat field is saturated: expose less";
     return NULL;
 }

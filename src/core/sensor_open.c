@@ -15,7 +15,8 @@ uint32_t lp_sensor_check(const lensprof_sensor_plan *plan) {
 
 static int is_pattern_sound(const lp_sensor_grid *grid) {
     if (grid->side != 1 && grid->side != 2 && grid->side != 4) return 0;
-    if (!grid->planes || grid->planes > LENSPROF_SENSOR_PLANES || grid->flip > LENSPROF_FLIP_BOTH) return 0;
+    if (!grid->planes || grid->planes > LENSPROF_SENSOR_PLANES || grid->flip > LENSPROF_FLIP_BOTH || grid->reserved)
+        return 0;
     for (uint32_t i = 0; i < sizeof grid->plane; i++)
         if (grid->plane[i] >= grid->planes) return 0;
     return lp_is_sensor_grid_side(grid->columns) && lp_is_sensor_grid_side(grid->rows);
@@ -36,14 +37,15 @@ int lp_sensor_grid_is_sound(const lp_sensor_grid *grid) {
            && is_axis_sound(&grid->axis[1], grid->rows, grid->height, grid->side);
 }
 
-static int is_level_sound(int32_t level) { return level >= -LARGEST_LEVEL / 2 - 1 && level <= LARGEST_LEVEL; }
+static int is_level_sound(int32_t level) { return level >= -(1 << 29) && level <= LARGEST_LEVEL; }
 
 static int are_numbers_sound(const lensprof_sensor_plan *plan) {
     const uint32_t count = plan->grid.planes * lp_sensor_grid_nodes(&plan->grid);
     if (plan->bytes != sizeof *plan + count * sizeof(uint32_t)) return 0;
-    if (plan->grid.shift < LP_SENSOR_LEAST_SHIFT || plan->grid.shift > LP_SENSOR_LARGEST_SHIFT) return 0;
+    if (!is_level_sound(plan->white_in) || !is_level_sound(plan->white_out)) return 0;
     for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++)
-        if (!is_level_sound(plan->black_in[p]) || !is_level_sound(plan->black_out[p]) || plan->largest[p] > 65535)
+        if (!is_level_sound(plan->black_in[p]) || !is_level_sound(plan->black_out[p]) || plan->largest[p] > 65535
+            || plan->shift[p] < LP_SENSOR_LEAST_SHIFT || plan->shift[p] > LP_SENSOR_LARGEST_SHIFT)
             return 0;
     for (uint32_t i = 0; i < count; i++)
         if (!lp_sensor_nodes(plan, 0)[i] || lp_sensor_nodes(plan, 0)[i] > LP_SENSOR_LARGEST_NODE) return 0;
@@ -69,7 +71,8 @@ lensprof_status lensprof_sensor_plan_open(const void *data, size_t size, const l
 /* Whether they have everything in common but gains, and what follows from gains. */
 static int are_alike(const lensprof_sensor_plan *a, const lensprof_sensor_plan *b) {
     lensprof_sensor_plan head = *b;
-    head.check = a->check, head.grid.shift = a->grid.shift;
+    head.check = a->check;
+    memcpy(head.shift, a->shift, sizeof head.shift);
     memcpy(head.largest, a->largest, sizeof head.largest);
     return !memcmp(&head, a, sizeof head);
 }
@@ -84,17 +87,20 @@ lensprof_status lensprof_sensor_plan_mix(void *memory, size_t size, const lenspr
     if (!memory || !a || !b || !result || share > 65536 || !are_alike(a, b)) return LENSPROF_ERROR_ARGUMENT;
     if (size < a->bytes || (uintptr_t)memory % 4) return LENSPROF_ERROR_CAPACITY;
     lensprof_sensor_plan *plan = memory;
-    const uint32_t *from_a = lp_sensor_nodes(a, 0), *from_b = lp_sensor_nodes(b, 0);
-    uint32_t *node = (uint32_t *)(void *)(plan + 1);
-    const uint32_t count = a->grid.planes * lp_sensor_grid_nodes(&a->grid);
-    const uint32_t shift = a->grid.shift < b->grid.shift ? a->grid.shift : b->grid.shift;
-    for (uint32_t i = 0; i < count; i++)
-        node[i] = mixed(from_a[i] >> (a->grid.shift - shift), from_b[i] >> (b->grid.shift - shift), share);
-    const lensprof_sensor_plan other = *b; /* memory may be that of a plan */
-    if (plan != a) *plan = *a;
-    plan->grid.shift = (uint8_t)shift;
-    for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++)
-        plan->largest[p] = mixed(plan->largest[p], other.largest[p], share);
+    const lensprof_sensor_plan of_b = *b; /* memory may be that of a plan */
+    const uint32_t count = lp_sensor_grid_nodes(&a->grid);
+    if (plan != a) memmove(plan, a, sizeof *plan);
+    for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++) {
+        const uint32_t of_a = plan->shift[p], shift = of_a < of_b.shift[p] ? of_a : of_b.shift[p];
+        const uint32_t *from_a = lp_sensor_nodes(a, p), *from_b = lp_sensor_nodes(b, p);
+        uint32_t *node = (uint32_t *)(void *)(plan + 1) + p * count;
+        for (uint32_t i = 0; p < plan->grid.planes && i < count; i++) {
+            const uint32_t gain = mixed(from_a[i] >> (of_a - shift), from_b[i] >> (of_b.shift[p] - shift), share);
+            node[i] = gain ? gain : 1;
+        }
+        plan->shift[p] = (uint8_t)shift;
+        plan->largest[p] = mixed(plan->largest[p], of_b.largest[p], share);
+    }
     plan->check = lp_sensor_check(plan);
     *result = plan;
     return LENSPROF_OK;

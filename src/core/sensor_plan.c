@@ -32,24 +32,26 @@ static double attenuation_at(const lensprof_apply_options *o, const lp_model *m,
     return falloff * lp_grid_value(node, 2, (lp_grid_cell){0, column.fraction}, (lp_grid_cell){0, row.fraction});
 }
 
-/* Of the options: with chroma, strength and gain cap (apply.h). */
-static double corrected_attenuation(const lensprof_apply_options *o, const lp_model *m, uint32_t channel, double x,
-                                    double y) {
-    static const double luminance[3] = {0.2126, 0.7152, 0.0722};
-    const int have_colour = m->vignettings == 3 || m->channels == 3;
-    double of = attenuation_at(o, m, channel, x, y);
-    if (o->chroma) {
-        double y_of = 0.0;
-        for (uint32_t c = 0; c < 3; c++) y_of += luminance[c] * attenuation_at(o, m, c, x, y);
-        of = have_colour ? of / y_of : 1.0;
+static double with_strength(const lp_sensor_source *s, uint32_t channel, double x, double y) {
+    return 1.0 + s->options.strength * (attenuation_at(&s->options, &s->model, channel, x, y) - 1.0);
+}
+
+/* With strength, chroma and gain cap, as apply.h states them. */
+static double corrected_attenuation(const lp_sensor_source *s, uint32_t channel, double x, double y) {
+    static const double weight[3] = {0.2126, 0.7152, 0.0722};
+    const double cap = s->options.gain_cap > 0.0 ? s->options.gain_cap : LP_LARGEST_GAIN_CAP;
+    double of = with_strength(s, channel, x, y);
+    if (s->options.chroma) {
+        double luminance = 0.0;
+        for (uint32_t c = 0; c < 3; c++) luminance += weight[c] * with_strength(s, c, x, y);
+        of = s->has_colours ? of / luminance : 1.0;
     }
-    return fmax(1.0 + o->strength * (of - 1.0), 1.0 / (o->gain_cap > 0.0 ? o->gain_cap : LP_LARGEST_GAIN_CAP));
+    return fmax(of, 1.0 / cap);
 }
 
 double lp_sensor_gain(const lp_sensor_source *s, uint32_t plane, double x, double y) {
     const uint32_t channel = s->readout.channel[plane];
-    const double gain =
-        lp_exposure_ratio(&s->options, channel) / corrected_attenuation(&s->options, &s->model, channel, x, y);
+    const double gain = lp_exposure_ratio(&s->options, channel) / corrected_attenuation(s, channel, x, y);
     return s->options.direction == LENSPROF_DIRECTION_SIMULATE ? 1.0 / gain : gain;
 }
 
@@ -82,6 +84,10 @@ lensprof_status lp_sensor_source_take(lp_sensor_source *s, const lensprof_apply_
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "grids of gains take no image circle or dither");
     if (take_levels(s) != LENSPROF_OK)
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "levels: black is not below white, or white over 65535");
+    s->has_colours = 0;
+    for (uint32_t p = 1; p < lp_readout_planes(&s->readout); p++)
+        if (s->readout.channel[p] != s->readout.channel[0])
+            s->has_colours = s->model.vignettings == 3 || s->model.channels == 3;
     return LENSPROF_OK;
 }
 
@@ -100,11 +106,16 @@ static double excess_at(const lp_sensor_source *s, uint32_t plane, uint32_t colu
     double excess = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         if (side < 0 ? at == 0 : at + 1 == nodes) continue;
-        const double next = pixel_at(s, axis, at + side), middle = pixel_at(s, axis, at + 0.5 * side);
+        const double next = pixel_at(s, axis, (double)at + side), middle = pixel_at(s, axis, at + 0.5 * side);
         const double there = lp_sensor_gain(s, plane, axis ? x : next, axis ? next : y);
         excess += 0.5 * (gain + there) - lp_sensor_gain(s, plane, axis ? x : middle, axis ? middle : y);
     }
     return at == 0 || at + 1 == nodes ? excess : 0.5 * excess;
+}
+
+static double own_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row) {
+    const lensprof_readout *r = &s->readout;
+    return r->gains ? (double)r->gains[(plane * r->rows + row) * r->columns + column] : 1.0;
 }
 
 /* The gain of light at a node, of the nodes as the plan counts them. Half of the excess is subtracted, so that a cell
@@ -117,57 +128,46 @@ static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column
     const double exact = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
     const double excess = excess_at(s, plane, column, row, 0) + excess_at(s, plane, column, row, 1);
     const double gain = fmax(exact - 0.5 * excess, least);
-    return r->gains ? gain * (double)r->gains[(plane * r->rows + row) * r->columns + column] : gain;
+    return gain * own_at(s, plane, column, row);
 }
 
-static double least_gain(const lp_sensor_source *s, uint32_t plane) {
-    double least = lp_sensor_gain(s, plane, 0.0, 0.0);
+/* Over the nodes of a plane: the smallest gain of light, and the largest with the readout's own. */
+static void find_extremes(const lp_sensor_source *s, uint32_t plane, double *least, double *largest) {
+    *least = lp_sensor_gain(s, plane, 0.0, 0.0), *largest = 0.0;
     for (uint32_t row = 0; row < s->readout.rows; row++)
         for (uint32_t column = 0; column < s->readout.columns; column++) {
             const double gain = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
-            if (gain < least) least = gain;
+            if (gain < *least) *least = gain;
+            *largest = fmax(*largest, gain * own_at(s, plane, column, row));
         }
-    return least;
 }
 
-/* Writes the gains of codes as floats. Returns the largest of them; *least receives the smallest gain of light, at most
- * 1. */
-static double write_gains(lensprof_sensor_plan *plan, const lp_sensor_source *s, double *least) {
-    float *node = (float *)(void *)(plan + 1);
-    double largest = 0.0;
-    *least = 1.0;
-    for (uint32_t p = 0; p < plan->grid.planes; p++) {
-        const double units = lp_sensor_span(s, LP_OUTPUT, p) / lp_sensor_span(s, LP_INPUT, p);
-        const double of_plane = least_gain(s, p);
-        for (uint32_t row = 0; row < plan->grid.rows; row++)
-            for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
-                const double gain = node_at(s, p, column, row, of_plane);
-                if (gain < *least) *least = gain;
-                largest = fmax(largest, gain * units);
-                *node = (float)(gain * units);
-            }
-    }
-    return largest;
+/* The finest unit in which gains of codes fit; 0 = none does. */
+static uint32_t shift_of(double largest) {
+    uint32_t shift = LP_SENSOR_LARGEST_SHIFT;
+    while (shift >= LP_SENSOR_LEAST_SHIFT && largest * (double)(1u << shift) > LP_SENSOR_LARGEST_NODE) shift--;
+    return shift < LP_SENSOR_LEAST_SHIFT ? 0 : shift;
 }
 
-/* Rounds the gains to integers, in the finest unit in which the largest fits. */
-static lensprof_status round_gains(lensprof_sensor_plan *plan, double largest) {
-    uint32_t shift = LP_SENSOR_LARGEST_SHIFT, *node = (uint32_t *)(void *)(plan + 1);
-    while (largest * (double)(1u << shift) > LP_SENSOR_LARGEST_NODE && shift > 0) shift--;
-    if (shift < LP_SENSOR_LEAST_SHIFT) return LENSPROF_ERROR_UNSUPPORTED;
-    plan->grid.shift = (uint8_t)shift;
-    for (uint32_t i = 0; i < plan->grid.planes * lp_sensor_grid_nodes(&plan->grid); i++) {
-        float gain;
-        memcpy(&gain, &node[i], sizeof gain);
-        const double rounded = floor((double)gain * (double)(1u << shift) + 0.5);
-        node[i] = rounded < 1.0 ? 1 : rounded > LP_SENSOR_LARGEST_NODE ? LP_SENSOR_LARGEST_NODE : (uint32_t)rounded;
-    }
-    return LENSPROF_OK;
+/* Writes the nodes of a plane. Returns the smallest gain of light among them. */
+static double write_nodes(lensprof_sensor_plan *plan, const lp_sensor_source *s, uint32_t plane, double least) {
+    uint32_t *node = (uint32_t *)(void *)(plan + 1) + plane * lp_sensor_grid_nodes(&plan->grid);
+    const double units = lp_sensor_span(s, LP_OUTPUT, plane) / lp_sensor_span(s, LP_INPUT, plane);
+    double smallest = 1.0;
+    for (uint32_t row = 0; row < plan->grid.rows; row++)
+        for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
+            const double gain = node_at(s, plane, column, row, least);
+            const double rounded = floor(gain * units * (double)(1u << plan->shift[plane]) + 0.5);
+            if (gain < smallest) smallest = gain;
+            *node = rounded < 1.0 ? 1 : (uint32_t)rounded;
+        }
+    return smallest;
 }
 
 static int32_t level_of(double code) { return (int32_t)floor(code * (1 << LP_SENSOR_LEVEL_SHIFT) + 0.5); }
 
 static void prepare_levels(lensprof_sensor_plan *plan, const lp_sensor_source *s, double least) {
+    plan->white_in = level_of(s->levels[LP_INPUT].white), plan->white_out = level_of(s->levels[LP_OUTPUT].white);
     const int is_neutral = s->options.saturated == LENSPROF_SATURATED_NEUTRAL && plan->grid.planes > 1
                            && s->options.direction == LENSPROF_DIRECTION_CORRECT;
     for (uint32_t p = 0; p < LENSPROF_SENSOR_PLANES; p++) {
@@ -196,15 +196,27 @@ lensprof_status lensprof_sensor_plan_init(void *memory, size_t size, const lensp
     if (status != LENSPROF_OK) return status;
     const size_t bytes = bytes_of_nodes(lp_readout_nodes(&source.readout));
     if (size < bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
+    double least[LENSPROF_SENSOR_PLANES], smallest = 1.0;
+    uint8_t shift[LENSPROF_SENSOR_PLANES] = {LP_SENSOR_LEAST_SHIFT, LP_SENSOR_LEAST_SHIFT, LP_SENSOR_LEAST_SHIFT,
+                                             LP_SENSOR_LEAST_SHIFT};
+    const uint32_t planes = lp_readout_planes(&source.readout);
+    for (uint32_t p = 0; p < planes; p++) {
+        double largest;
+        find_extremes(&source, p, &least[p], &largest);
+        shift[p] =
+            (uint8_t)shift_of(largest * lp_sensor_span(&source, LP_OUTPUT, p) / lp_sensor_span(&source, LP_INPUT, p));
+        if (!shift[p]) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "gains of 4096 or more");
+    }
     lensprof_sensor_plan *plan = memory;
-    double least;
     memset(plan, 0, sizeof *plan);
     plan->magic = LP_SENSOR_MAGIC, plan->bytes = (uint32_t)bytes;
     plan->grid = lp_readout_grid(&source.readout, source.options.frame_width, source.options.frame_height);
-    const double largest = write_gains(plan, &source, &least);
-    if (round_gains(plan, largest) != LENSPROF_OK)
-        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "gains of 4096 or more");
-    prepare_levels(plan, &source, least);
+    memcpy(plan->shift, shift, sizeof shift);
+    for (uint32_t p = 0; p < planes; p++) {
+        const double of_plane = write_nodes(plan, &source, p, least[p]);
+        if (of_plane < smallest) smallest = of_plane;
+    }
+    prepare_levels(plan, &source, smallest);
     plan->check = lp_sensor_check(plan);
     *result = plan;
     return lp_fail(error, LENSPROF_OK, "");

@@ -11,6 +11,7 @@ typedef struct lp_sensor_source {
     lensprof_readout readout;
     lp_model model;
     lensprof_sensor_levels levels[2];
+    int has_colours; /* planes use more than one channel */
 } lp_sensor_source;
 
 /* Copies and checks them; status and text are those of lensprof_sensor_plan_init. */

@@ -22,7 +22,7 @@ static void print_sensor(int n, uint64_t *random) {
     static sensor_case c;
     static uint32_t words[(SENSOR_WIDTH + 1) / 2];
     make_sensor(&c, random);
-    c.readout.columns = 3 + sensor_below(4, random), c.readout.rows = 3 + sensor_below(4, random);
+    c.readout.columns = 6 + sensor_below(3, random), c.readout.rows = 6 + sensor_below(3, random);
     make_sensor_plan(&c);
     const lensprof_image from = {c.in[0], 0, SENSOR_PIXELS, 1, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY};
     const lensprof_target to = {c.out[0], 0, SENSOR_PIXELS, 1, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY};

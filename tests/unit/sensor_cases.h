@@ -149,7 +149,7 @@ static inline void make_sensor(sensor_case *c, uint64_t *random) {
     r->x = sensor_below(20, random), r->y = sensor_below(20, random);
     r->width = (o->frame_width - r->x) / r->step - sensor_below(20, random);
     r->height = (o->frame_height - r->y) / r->step - sensor_below(20, random);
-    r->columns = 3 + sensor_below(31, random), r->rows = 3 + sensor_below(31, random);
+    r->columns = 6 + sensor_below(28, random), r->rows = 6 + sensor_below(28, random);
     if (lp_random(random) < 0.3) {
         for (uint32_t i = 0; i < 4 * r->columns * r->rows; i++) c->gains[i] = (float)(1.0 + lp_random(random));
         r->gains = c->gains;

@@ -213,16 +213,28 @@ static void test_plans_between_two(void **state) {
         assert_ok(lensprof_sensor_plan_mix(memory, sizeof memory, a.plan, b.plan, share, &plan));
         const lensprof_sensor_plan *opened;
         assert_ok(lensprof_sensor_plan_open(memory, sizeof memory, &opened));
-        const uint32_t count = plan->grid.planes * plan->grid.rows * plan->grid.columns;
-        for (uint32_t i = 0; i < count; i++) {
-            const double of_a = ldexp(lp_sensor_nodes(a.plan, 0)[i], -a.plan->grid.shift);
-            const double of_b = ldexp(lp_sensor_nodes(b.plan, 0)[i], -b.plan->grid.shift);
+        const uint32_t count = lp_sensor_grid_nodes(&plan->grid);
+        for (uint32_t i = 0; i < plan->grid.planes * count; i++) {
+            const uint32_t p = i / count;
+            const double of_a = ldexp(lp_sensor_nodes(a.plan, 0)[i], -a.plan->shift[p]);
+            const double of_b = ldexp(lp_sensor_nodes(b.plan, 0)[i], -b.plan->shift[p]);
             const double wanted = of_a + (of_b - of_a) * share / 65536.0;
-            assert_close(ldexp(lp_sensor_nodes(plan, 0)[i], -plan->grid.shift), wanted, ldexp(3.0, -plan->grid.shift));
+            assert_close(ldexp(lp_sensor_nodes(plan, 0)[i], -plan->shift[p]), wanted, ldexp(3.0, -plan->shift[p]));
         }
-        if (share == 0 && plan->grid.shift == a.plan->grid.shift) assert_memory_equal(memory, a.memory, plan->bytes);
+        if (share == 0 && !memcmp(plan->shift, a.plan->shift, 4)) assert_memory_equal(memory, a.memory, plan->bytes);
     }
     b = a;
+    b.levels[0] = (lensprof_sensor_levels){{64, 64, 64, 64}, 1023}, b.readout.levels = &b.levels[0];
+    b.readout.output_levels = NULL, b.readout.gains = NULL;
+    make_sensor_plan(&b);
+    a = b;
+    b.levels[0].white = 4095; /* the same black */
+    make_sensor_plan(&b);
+    a.plan = (const lensprof_sensor_plan *)(const void *)a.memory;
+    assert_int_equal(lensprof_sensor_plan_mix(memory, sizeof memory, a.plan, b.plan, 5, &plan),
+                     LENSPROF_ERROR_ARGUMENT);
+    b = a;
+    b.readout.levels = &b.levels[0];
     b.readout.flip ^= 1;
     make_sensor_plan(&b);
     memset(memory, 7, sizeof memory);
@@ -281,6 +293,50 @@ static void test_stated_error(void **state) {
         c.readout.rows = 16;
         assert_int_equal(lensprof_sensor_plan_error(c.plan, &c.m.options, &c.readout, &finer), LENSPROF_ERROR_ARGUMENT);
     }
+}
+
+/* Each option of apply.h does what it does there: a fine grid is compared with plans in floating point. */
+static void test_options_are_those_of_plans(void **state) {
+    (void)state;
+    static sensor_case c;
+    static uint64_t memory[1 << 14];
+    static uint16_t wanted[SENSOR_ROWS][SENSOR_WIDTH];
+    uint64_t random = 53;
+    int chroma = 0;
+    for (int n = 0; n < 200; n++) {
+        lensprof_apply_options *o = &c.m.options;
+        const lensprof_plan *plan;
+        make_sensor(&c, &random);
+        assert_ok(lensprof_readout_set_mosaic(&c.readout, n % 3 ? "GRBG" : "G"));
+        c.colors = n % 3 ? "GRBG" : "G";
+        o->grid = NULL, o->levels = o->output_levels = NULL, o->gain_cap = 0.0, o->output_response = NULL;
+        o->output_responses = 0, o->saturated = LENSPROF_SATURATED_AS_VALUE;
+        o->chroma = n % 2;
+        o->source_sample = o->target_sample = LENSPROF_SAMPLE_U16;
+        o->source_layout = n % 3 ? LENSPROF_LAYOUT_GRBG : LENSPROF_LAYOUT_GREY;
+        c.readout.x = c.readout.y = c.readout.flip = c.readout.width = c.readout.height = 0, c.readout.step = 1;
+        c.readout.gains = NULL, c.readout.levels = c.readout.output_levels = NULL;
+        c.readout.columns = c.readout.rows = 33;
+        make_sensor_plan(&c);
+        double error;
+        assert_ok(lensprof_sensor_plan_error(c.plan, o, &c.readout, &error));
+        for (uint32_t y = 0; y < SENSOR_ROWS; y++)
+            for (uint32_t x = 0; x < SENSOR_WIDTH; x++) c.in[y][x] = (uint16_t)(20000.0 * lp_random(&random));
+        apply_case(&c);
+        assert_ok(lensprof_plan_init(memory, sizeof memory, o, &plan, NULL));
+        lensprof_image from = view_of(c.in[0], SENSOR_WIDTH, SENSOR_ROWS);
+        lensprof_target to = target_of(wanted[0], SENSOR_WIDTH, SENSOR_ROWS);
+        from.layout = to.layout = o->source_layout;
+        assert_ok(lensprof_apply(plan, &from, &to, c.x0, c.y0));
+        for (uint32_t y = 0; y < SENSOR_ROWS; y++)
+            for (uint32_t x = 0; x < SENSOR_WIDTH; x++) {
+                if (abs(c.out[y][x] - wanted[y][x]) > 1.5 + 1.2 * error * wanted[y][x])
+                    fail_msg("run %d: %u becomes %u, not %u; error of the grid %g", n, c.in[y][x], c.out[y][x],
+                             wanted[y][x], error);
+                chroma += o->chroma && c.out[y][x] != c.in[y][x];
+            }
+    }
+    assert_true(chroma > 1000);
 }
 
 /* Levels and exposures of the options count for the readout. */
@@ -358,6 +414,7 @@ static void test_plans_that_are_refused(void **state) {
     } while (0)
     lensprof_image_circle circle = {{0.0, 0.0}, 0.5};
     BAD(LENSPROF_ERROR_ARGUMENT, c.levels[0].white = 0.0);
+    BAD(LENSPROF_ERROR_ARGUMENT, c.levels[0].white = -1.0; c.levels[0].black[0] = -100.0);
     BAD(LENSPROF_ERROR_ARGUMENT, c.levels[0].white = 65536.0);
     BAD(LENSPROF_ERROR_ARGUMENT, c.levels[0].white = (double)NAN);
     BAD(LENSPROF_ERROR_ARGUMENT, c.levels[0].black[3] = c.levels[0].white);
@@ -394,10 +451,7 @@ static void test_plans_that_are_refused(void **state) {
     BAD(LENSPROF_ERROR_UNSUPPORTED, c.m.options.input = LENSPROF_ENCODING_RESPONSE);
     BAD(LENSPROF_ERROR_EXPOSURE, c.m.options.source.ev = 100.0);
     BAD(LENSPROF_ERROR_ARGUMENT, c.m.options.strength = 2.0);
-    c.m.options.target.ev = 14.0;
-    const lensprof_status status =
-        lensprof_sensor_plan_init(c.memory, sizeof c.memory, &c.m.options, &c.readout, &c.plan, NULL);
-    assert_int_equal(status, LENSPROF_ERROR_UNSUPPORTED);
+    BAD(LENSPROF_ERROR_UNSUPPORTED, c.m.options.target.ev = 14.0; c.m.options.direction = LENSPROF_DIRECTION_CORRECT);
     assert_int_equal(lensprof_sensor_plan_bytes(NULL), 0);
 }
 
@@ -510,6 +564,7 @@ int main(void) {
         cmocka_unit_test(test_plans_between_two),
         cmocka_unit_test(test_share_of_a_temperature),
         cmocka_unit_test(test_stated_error),
+        cmocka_unit_test(test_options_are_those_of_plans),
         cmocka_unit_test(test_levels_of_the_profile),
         cmocka_unit_test(test_mosaics_that_are_refused),
         cmocka_unit_test(test_plans_that_are_refused),

@@ -148,6 +148,16 @@ static void test_flat_fields_that_are_refused(void **state) {
     render(&r, 0, 64.0, 4095.0, 0.0, &random);
     assert_ok(lensprof_sensor_flat_add(flat, &most, 0, 0));
     REFUSED("missing");
+    flat = begin(&r); /* as many samples as a picture has, of the upper half twice */
+    const lensprof_image half = rows_at(0, W, H / 2);
+    for (int shot = 0; shot < 2; shot++) assert_ok(lensprof_sensor_flat_add(flat, &half, 0, 0));
+    REFUSED("missing");
+    flat = begin(&r); /* a row in place of another */
+    for (uint32_t y = 0; y < H; y++) {
+        const lensprof_image one = rows_at(y, W, 1);
+        assert_ok(lensprof_sensor_flat_add(flat, &one, 0, y == 30 ? 33 : y));
+    }
+    REFUSED("missing");
     flat = begin(&r);
     for (uint32_t x = 0; x < W; x++) picture[3][x] = 4095;
     assert_ok(lensprof_sensor_flat_add(flat, &whole, 0, 0));

@@ -174,16 +174,15 @@ class SensorFlat:
         return self._memory.tobytes()[:int(self._memory.view(np.uint32)[1])]
 
     @classmethod
-    def open(cls, data: bytes, readout: Readout) -> "SensorFlat":
-        """The flat field from the memory of a device, and the readout that was used there."""
+    def open(cls, data: bytes) -> "SensorFlat":
+        """The flat field from the memory of a device."""
         flat = cls.__new__(cls)
         flat._memory, flat._flat = _words(len(data), np.uint64), POINTER(_abi.SensorFlat)()
         flat._memory.view(np.uint8)[:len(data)] = np.frombuffer(data, dtype=np.uint8)
         check(lib.lensprof_sensor_flat_open(flat._memory.ctypes.data, len(data), byref(flat._flat)),
               "not the memory of a flat field of this version, or damaged; copy it again")
-        flat._shape = (1 + int(max(readout.plane[:readout.side * readout.side])), readout.rows, readout.columns)
-        if lib.lensprof_sensor_flat_bytes(byref(readout)) != len(data):
-            raise ValueError(f"{len(data)} bytes are not those of a flat field of this readout")
+        columns, rows = flat._memory.view(np.uint32)[9:11]  # src/core/sensor_flat.h
+        flat._shape = (int(flat._memory.view(np.uint8)[17]), int(rows), int(columns))
         return flat
 
     def add(self, samples: Pixels, *, x0: int = 0, y0: int = 0) -> None:
