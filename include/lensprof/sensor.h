@@ -22,7 +22,7 @@
  * G is bilinear between nodes that divide the frame evenly, as in the shading correction of image signal processors:
  * along a row, a gain is the one before plus a constant. The nodes hold all that apply.h does in linear light: falloff,
  * gain grid, exposure and white balance. A grid is less exact than the polynomial; lensprof_sensor_plan_error returns
- * by how much (docs/firmware.md has a table).
+ * by how much (docs/sensor.md has a table).
  *
  * Preparing a plan takes floating point. A plan contains no address, so it may be made on a PC and lie in flash; the
  * rest is integers, with results that are equal on all machines. A sample takes one multiplication of 32 by 32 bits.

@@ -257,7 +257,7 @@ void test_middles(void **) {
 
 }  // namespace
 
-// What is left out of a fit as black is no light that a unit has: the fit continues the falloff there.
+// A fit leaves out what is black, and continues the falloff there: such units do not pass.
 void test_covered_units(void **) {
     Module covered, circle;
     covered.covered = 0.12, circle.circle = 0.7;
@@ -278,13 +278,37 @@ void test_covered_units(void **) {
     for (const char *name : {"u00", "u05"}) assert_true(unit_named(alone["batches"][0], name)["verdict"] == "fail");
 }
 
+// A folder without a picture that can be used is a unit that was not measured.
+void test_units_without_pictures(void **) {
+    const std::string folder = make_units("absent", 4), csv = in_folder("absent.csv");
+    std::filesystem::create_directory(folder + "/u90");
+    std::filesystem::create_directory(folder + "/u91");
+    std::ofstream(folder + "/u91/card.tif") << "no picture";
+    const Json json =
+        parsed(must_exit(not_usable, units_of(folder, {"--units", "by=folder", "-o", csv, "--no-store", "--json"})));
+    assert_int_equal(json["without_pictures"].size(), 2);
+    assert_true(json["without_pictures"][0]["unit"] == "u90" && json["without_pictures"][1]["unit"] == "u91");
+    assert_true(contains(json["without_pictures"][1]["reason"].get<std::string>(), "card.tif"));
+    const std::string rows = text_of(csv);
+    assert_true(contains(rows, "\nu90,,,,,0,not measured,") && contains(rows, "\nu91,,,,,0,not measured,"));
+    const auto commas = [](const std::string &line) { return std::count(line.begin(), line.end(), ','); };
+    assert_int_equal(commas(rows.substr(0, rows.find('\n'))),
+                     commas(rows.substr(rows.find("\nu90"), rows.find("\nu91") - rows.find("\nu90"))));
+}
+
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_a_line),           CLI_TEST(test_covered_units),
-        CLI_TEST(test_few_units),        CLI_TEST(test_one_light_for_all),
-        CLI_TEST(test_rotated_pictures), CLI_TEST(test_types_are_not_mixed),
-        CLI_TEST(test_unknown_units),    CLI_TEST(test_units_by_folder_and_serial),
-        CLI_TEST(test_units_by_name),    CLI_TEST(test_middles),
+        CLI_TEST(test_a_line),
+        CLI_TEST(test_covered_units),
+        CLI_TEST(test_units_without_pictures),
+        CLI_TEST(test_few_units),
+        CLI_TEST(test_one_light_for_all),
+        CLI_TEST(test_rotated_pictures),
+        CLI_TEST(test_types_are_not_mixed),
+        CLI_TEST(test_unknown_units),
+        CLI_TEST(test_units_by_folder_and_serial),
+        CLI_TEST(test_units_by_name),
+        CLI_TEST(test_middles),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

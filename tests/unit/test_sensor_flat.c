@@ -152,7 +152,7 @@ static void test_flat_fields_that_are_refused(void **state) {
     const lensprof_image half = rows_at(0, W, H / 2);
     for (int shot = 0; shot < 2; shot++) assert_ok(lensprof_sensor_flat_add(flat, &half, 0, 0));
     REFUSED("missing");
-    flat = begin(&r); /* a row in place of another */
+    flat = begin(&r); /* a row instead of another */
     for (uint32_t y = 0; y < H; y++) {
         const lensprof_image one = rows_at(y, W, 1);
         assert_ok(lensprof_sensor_flat_add(flat, &one, 0, y == 30 ? 33 : y));

@@ -63,6 +63,7 @@ int run_units(const UnitsCommand &o, const CardSettings &settings, Streams &stre
     check_store(o.cards.store);
     UnitCards cards;
     cards.options = o.units, cards.left_out = settings.left_out, cards.given = settings.given;
+    cards.missing = settings.missing_units;
     const std::shared_ptr<lensprof_profile> reference = reference_of(o.cards.store, o.units.against);
     Progress progress(streams, o.progress);
     const CardOptions own = options_of_units(o.cards);

@@ -186,6 +186,8 @@ void declare_units(Command &command, UnitOptions &o) {
           "a unit fails if the light in its corners differs by more from that of the others; default 3%");
     limit("center", o.limits.center, "likewise its centre, of half the diagonal of the frame; default 3%");
     limit("frame", o.limits.frame, "likewise the light at any place of the frame; default 5%");
+    limit("unseen", o.limits.unseen,
+          "likewise the share of the frame that is black, saturated, covered or dirty; default 1%");
     limit("color", o.limits.color, "likewise the light in red or blue over that in green; default 2%");
     keys.word(
         "against", "ID", [given, &o](const std::string &word) { (void)given(), o.against = profile_id_of(word); },
@@ -231,17 +233,26 @@ std::string units_csv(const UnitCards &cards) {
         "difference_color,difference_color_sigma,frame_at_x,frame_at_y,dust,unseen,reason\n";
     for (const UnitBatch &batch : cards.batches)
         for (const UnitResult &unit : batch.units) text += csv_row(cards, unit);
+    const std::string head = text.substr(0, text.find('\n'));
+    const auto commas = static_cast<size_t>(std::count(head.begin(), head.end(), ','));
+    for (const UnitWithoutPictures &unit : cards.missing)  // the name, four unknown cells, no picture, the verdict
+        text += csv_cell(unit.unit) + ",,,,,0," + unit_verdict_name(UnitVerdict::not_measured)
+                + std::string(commas - 6, ',') + csv_cell(unit.reason) + "\n";
     return text;
 }
 
 ExitCode units_exit_code(const UnitCards &cards) {
     const auto passes = [](const UnitBatch &batch) { return batch.count(UnitVerdict::pass) == batch.units.size(); };
-    if (!std::all_of(cards.batches.begin(), cards.batches.end(), passes)) return ExitCode::not_usable;
+    if (!cards.missing.empty() || !std::all_of(cards.batches.begin(), cards.batches.end(), passes))
+        return ExitCode::not_usable;
     return cards.left_out.empty() ? ExitCode::done : ExitCode::unreadable;
 }
 
 void print_units(const UnitCards &cards, const std::string &database, bool with_notes, std::ostream &out) {
     for (const UnitBatch &batch : cards.batches) print_batch(cards, batch, out);
+    for (const UnitWithoutPictures &unit : cards.missing)
+        out << one_line(unit.unit) << "  " << unit_verdict_name(UnitVerdict::not_measured) << ": "
+            << one_line(unit.reason) << "\n";
     if (with_notes) print_unit_notes(cards, out);
     size_t stored = 0;
     for (const UnitBatch &batch : cards.batches) stored += batch.profile_id != 0;
@@ -263,12 +274,20 @@ Json units_json(const UnitCards &cards) {
                            {"units", units}});
     }
     for (const LeftOutCard &card : cards.left_out) left_out.push_back({{"file", card.file}, {"reason", card.reason}});
+    Json missing = Json::array();
+    for (const UnitWithoutPictures &unit : cards.missing)
+        missing.push_back({{"unit", unit.unit}, {"reason", unit.reason}});
     const UnitLimits &limits = cards.options.limits;
     return {{"schema", json_schema},
             {"method", "flat"},
             {"limits",
-             {{"corner", limits.corner}, {"center", limits.center}, {"frame", limits.frame}, {"color", limits.color}}},
+             {{"corner", limits.corner},
+              {"center", limits.center},
+              {"frame", limits.frame},
+              {"color", limits.color},
+              {"unseen", limits.unseen}}},
             {"batches", batches},
+            {"without_pictures", missing},
             {"left_out", left_out}};
 }
 

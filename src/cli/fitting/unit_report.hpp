@@ -7,6 +7,7 @@
 
 #include "cli/program/exit_code.hpp"
 #include "cli/program/options.hpp"
+#include "photo/cards/card_units.hpp"
 #include "photo/cards/unit_batch.hpp"
 #include "photo/report/report.hpp"
 
@@ -22,6 +23,7 @@ struct UnitOptions {
 struct UnitCards {
     std::vector<MeasuredSetting> settings;  // of a unit each
     std::vector<UnitBatch> batches;
+    std::vector<UnitWithoutPictures> missing;
     std::vector<LeftOutCard> left_out;
     size_t given = 0;  // pictures
     UnitOptions options;

@@ -52,8 +52,10 @@ CardFit begun(const CardInput &input) {
         fit.ev.push_back(image.ev);
         fit.rotated.push_back(image.rotation_deg);
     }
-    if (const lensprof_flat_image &first = input.images.front(); first.height > 0)
+    if (const lensprof_flat_image &first = input.images.front(); first.height > 0) {
         fit.aspect = static_cast<double>(first.width) / first.height;
+        fit.width = first.width, fit.height = first.height;
+    }
     fit.quality.resize(input.images.size());
     lensprof_flat_result_init(&fit.fit);
     return fit;

@@ -20,6 +20,7 @@ struct CardFit {
     std::vector<lensprof_response> response;
     lensprof_profile_key key{};
     double aspect = usual_aspect;               // width over height of the pictures
+    uint32_t width = 0, height = 0;             // of the frame, px
     bool is_turn_unknown = false;               // the profile lacks what differs between opposite sides
     std::shared_ptr<const lensprof_flat> held;  // NULL without a fit
     std::shared_ptr<lensprof_profile> profile;  // of it, in the frame of the sensor; NULL without a fit

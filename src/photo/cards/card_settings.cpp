@@ -352,8 +352,8 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
             settings.left_out.push_back({named[i].file, reason});
     }
     if (o.units)
-        for (const PictureWithoutUnit &one : assign_units(*o.units, named, pictures, events))
-            settings.left_out.push_back({one.file, one.reason});
+        for (const LeftOutCard &one : assign_units(*o.units, named, pictures, events)) settings.left_out.push_back(one);
+    if (o.units) settings.missing_units = units_without_pictures(*o.units, names, pictures, settings.left_out);
     if (pictures.empty()) {
         const LeftOutCard &first = settings.left_out.front();
         throw Failure(LENSPROF_ERROR_READ, settings.left_out.size() == 1

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "photo/cards/card_pictures.hpp"
+#include "photo/cards/card_units.hpp"
 #include "photo/cards/setting_table.hpp"
 
 namespace lensprof {
@@ -18,15 +19,12 @@ struct CardSetting {
     size_t group = 0;       // number of the setting, which several units share
 };
 
-struct LeftOutCard {
-    std::string file, reason;
-};
-
 struct CardSettings {
     std::vector<CardSetting> list;  // by camera, lens, focal length, aperture and distance
     std::vector<LeftOutCard> left_out;
     size_t given = 0;  // pictures
     bool has_folders = false;
+    std::vector<UnitWithoutPictures> missing_units;
 };
 
 // Where units are measured alone, each has settings of its own. Finds the settings of pictures and folders of them,

@@ -131,7 +131,7 @@ UnitRule::By choice_of(const std::vector<CardPicture> &pictures, const std::vect
 }
 
 // Units whose pictures state two serial numbers are two cameras, and are not measured.
-void drop_mixed(std::vector<CardPicture> &pictures, std::vector<PictureWithoutUnit> &left_out) {
+void drop_mixed(std::vector<CardPicture> &pictures, std::vector<LeftOutCard> &left_out) {
     std::map<std::string, const CardPicture *> first;
     std::map<std::string, std::string> mixed;
     for (const CardPicture &picture : pictures) {
@@ -164,7 +164,46 @@ void note_doubles(UnitRule::By by, const std::vector<CardPicture> &pictures, Eve
     }
 }
 
+// The folders of units: the subfolders of the only folder, or the folders given.
+std::vector<fs::path> unit_folders(const std::vector<std::string> &names) {
+    std::vector<fs::path> given, folders;
+    for (const std::string &name : names)
+        if (fs::is_directory(name)) given.push_back(fs::path(name).lexically_normal());
+    if (given.size() != 1) return given;
+    for (const fs::directory_entry &entry : fs::directory_iterator(given.front()))
+        if (entry.is_directory() && entry.path().filename().string().front() != '.') folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
+fs::path unit_name_of(const fs::path &folder) {
+    return folder.has_filename() ? folder.filename() : folder.parent_path().filename();
+}
+
 }  // namespace
+
+std::vector<UnitWithoutPictures> units_without_pictures(const UnitRule &rule, const std::vector<std::string> &names,
+                                                        const std::vector<CardPicture> &pictures,
+                                                        const std::vector<LeftOutCard> &left_out) {
+    std::vector<UnitWithoutPictures> missing;
+    if (rule.by != UnitRule::By::folder && rule.by != UnitRule::By::automatic) return missing;
+    std::set<std::string> units;
+    for (const CardPicture &picture : pictures) units.insert(picture.unit);
+    const std::vector<fs::path> folders = unit_folders(names);
+    const auto is_unit = [&](const fs::path &folder) { return units.count(unit_name_of(folder).string()) > 0; };
+    if (std::none_of(folders.begin(), folders.end(), is_unit)) return missing;  // serial numbers, or paths
+    for (const fs::path &folder : folders) {
+        if (is_unit(folder)) continue;
+        const auto is_below = [&](const LeftOutCard &card) {
+            const std::string below = card.file.substr(0, folder.string().size() + 1);
+            return below == folder.string() + "/" || card.file == folder.string();
+        };
+        const auto first = std::find_if(left_out.begin(), left_out.end(), is_below);
+        missing.push_back({unit_name_of(folder).string(),
+                           first == left_out.end() ? folder.string() + ": no picture in it" : first->reason});
+    }
+    return missing;
+}
 
 bool is_unit_pattern(const std::string &pattern) {
     const size_t mark = pattern.find(unit_mark);
@@ -192,15 +231,15 @@ std::vector<std::string> paths_without_units(const UnitRule &rule, const std::ve
     return paths;
 }
 
-std::vector<PictureWithoutUnit> assign_units(const UnitRule &rule, const std::vector<NamedPicture> &named,
-                                             std::vector<CardPicture> &pictures, Events &events) {
+std::vector<LeftOutCard> assign_units(const UnitRule &rule, const std::vector<NamedPicture> &named,
+                                      std::vector<CardPicture> &pictures, Events &events) {
     const bool needs_folders = rule.by == UnitRule::By::folder || rule.by == UnitRule::By::automatic;
     const std::vector<std::string> folders = needs_folders ? units_by_folder(named) : std::vector<std::string>();
     const UnitRule::By by = rule.by == UnitRule::By::automatic ? choice_of(pictures, folders) : rule.by;
     const std::regex pattern = by == UnitRule::By::name ? regex_of(rule.pattern) : std::regex();
     if (rule.by == UnitRule::By::automatic)
         events.note("", by == UnitRule::By::serial ? "units by the serial numbers in EXIF" : "units by their folders");
-    std::vector<PictureWithoutUnit> left_out;
+    std::vector<LeftOutCard> left_out;
     for (CardPicture &picture : pictures) {
         picture.unit = by == UnitRule::By::folder   ? folders[picture.index]
                        : by == UnitRule::By::serial ? serial_of(picture)

@@ -39,6 +39,8 @@ double cells_per_shot(const MeasuredUnit &unit) {
 // Width over height of the frame, in which profiles are: that of the sensor, which is not higher than wide.
 double shape_of(const CardFit &fit) { return std::max(fit.aspect, 1.0 / fit.aspect); }
 
+double longer_side_of(const CardFit &fit) { return std::max(fit.width, fit.height); }
+
 // The median of units: up to half of them may be anything without changing it by more than the others scatter.
 Usual median_unit(const std::vector<MeasuredUnit> &units, const std::vector<bool> &is_used, const Lattice &lattice) {
     const auto over_units = [&](auto value) {
@@ -132,24 +134,28 @@ void compare_centre(const MeasuredUnit &unit, const Usual &usual, UnitResult &re
 
 // Cells that are black, saturated or beyond an edge, and large spots, are left out of the fit, which continues the
 // falloff there: a covered lens would pass. Without other units, what the fit of this one states.
-double unseen_share(const MeasuredUnit &unit, const Usual &usual) {
-    if (std::isfinite(usual.cells)) return std::max(0.0, 1.0 - cells_per_shot(unit) / usual.cells);
+// Spots that are not as deep as differences may be do not count.
+double unseen_share(const MeasuredUnit &unit, const Usual &usual, const UnitLimits &limits) {
     const CardFit &fit = *unit.fit;
-    double share = usual.has_circle ? 0.0 : fit.fit.edge_share, spots = 0.0;
+    double shallow = 0.0, deep = 0.0;
+    for (uint32_t n = 0; n < std::min<uint32_t>(fit.fit.spots, LENSPROF_FLAT_SPOTS); n++) {
+        const lensprof_flat_spot &spot = fit.fit.spot[n];
+        const double share = M_PI * spot.radius * spot.radius / (static_cast<double>(fit.width) * fit.height);
+        (spot.depth < limits.frame ? shallow : deep) += share;
+    }
+    if (std::isfinite(usual.cells)) return std::max(0.0, 1.0 - cells_per_shot(unit) / usual.cells - shallow);
+    double share = usual.has_circle ? 0.0 : fit.fit.edge_share;
     for (const lensprof_flat_image_quality &quality : fit.quality)
         share = std::max({share, quality.black_share, quality.white_share});
-    const uint32_t *card = fit.quality.front().card;
-    for (uint32_t n = 0; n < std::min<uint32_t>(fit.fit.spots, LENSPROF_FLAT_SPOTS); n++)
-        spots += 3.14159265 * fit.fit.spot[n].radius * fit.fit.spot[n].radius;
-    return share + spots / (static_cast<double>(card[2]) * card[3]);
+    return share + deep;
 }
 
 void judge(const UnitLimits &limits, const Usual &usual, UnitResult &result) {
     std::vector<std::string> exceeded;
-    if (result.unseen > UnitLimits::unseen)
+    if (result.unseen > limits.unseen)
         exceeded.push_back(
             format("%.1f %% of the frame is black, saturated, covered or dirty, more than of other units (limit %g %%)",
-                   100.0 * result.unseen, 100.0 * UnitLimits::unseen));
+                   100.0 * result.unseen, 100.0 * limits.unseen));
     if (std::isnan(result.corner.value) && std::isfinite(usual.corner.median))
         exceeded.push_back("corner without light");
     const auto compare = [&](const char *name, const Difference &difference, double limit, const std::string &place) {
@@ -172,7 +178,7 @@ void compare(const std::vector<MeasuredUnit> &units, const Usual &usual, const U
         compare_frame(unit, usual, batch.lattice, result);
         compare_corner(unit, usual, result);
         compare_centre(unit, usual, result);
-        result.unseen = unseen_share(unit, usual);
+        result.unseen = unseen_share(unit, usual, limits);
         judge(limits, usual, result);
     }
     batch.usual = usual.shading;
@@ -236,8 +242,17 @@ double usual_shape(const std::vector<MeasuredSetting> &settings, const UnitBatch
     return shapes.empty() ? usual_aspect : middle_of(shapes).median;
 }
 
+// The size of the frame that most units have, px of the longer side. Another type is often seen by nothing else.
+double usual_side(const std::vector<MeasuredSetting> &settings, const UnitBatch &batch) {
+    std::vector<double> sides;
+    for (const UnitResult &unit : batch.units)
+        if (settings[unit.setting].is_good()) sides.push_back(longer_side_of(*settings[unit.setting].fit));
+    return sides.empty() ? 0.0 : middle_of(sides).median;
+}
+
 std::vector<MeasuredUnit> measured_units(const std::vector<MeasuredSetting> &settings, UnitBatch &batch) {
     constexpr double same_shape = 0.01;
+    const double side = usual_side(settings, batch);
     std::vector<MeasuredUnit> units;
     for (size_t n = 0; n < batch.units.size(); n++) {
         UnitResult &result = batch.units[n];
@@ -250,6 +265,10 @@ std::vector<MeasuredUnit> measured_units(const std::vector<MeasuredSetting> &set
                 "centre is unknown; give the pictures as the camera wrote them";
         } else if (std::fabs(std::log(shape_of(*setting.fit) / batch.lattice.aspect)) > same_shape) {
             result.reason = "its frame has another shape than that of the other units";
+        } else if (std::fabs(longer_side_of(*setting.fit) / side - 1.0) > same_shape) {
+            result.reason =
+                format("its frame has %.0f px on the longer side, those of the other units %.0f: another type?",
+                       longer_side_of(*setting.fit), side);
         } else {
             const Shading shading = shading_of(*setting.fit->profile, batch.lattice);
             units.push_back({n, &*setting.fit, shading, corner_light(shading, batch.lattice)});

@@ -14,7 +14,7 @@ namespace lensprof {
 struct UnitLimits {
     double corner = 0.03, frame = 0.05, color = 0.02;  // of the light
     double center = 0.03;                              // half diagonals
-    static constexpr double unseen = 0.01;             // of the frame
+    double unseen = 0.01;                              // of the frame
 };
 
 struct Difference {
