@@ -13,6 +13,7 @@
 #include "cli/fitting/store_options.hpp"
 #include "cli/page/page.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/level_words.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
@@ -20,6 +21,7 @@
 #include "cli/report/drawing.hpp"
 #include "cli/report/gain_chart.hpp"
 #include "photo/base/file_kind.hpp"
+#include "photo/base/format.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/calibration.hpp"
@@ -27,6 +29,7 @@
 #include "photo/calibration/preview.hpp"
 #include "photo/calibration/scene_fit.hpp"
 #include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/picture_levels.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
 #include "photo/scene/exposure_reader.hpp"
 #include "photo/scene/hugin_project.hpp"
@@ -106,6 +109,14 @@ void declare_build_fit(Command &command, BuildOptions &o) {
               "first");
     keys.choice("sampling", o.sampling, {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
                 "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
+    o.levels.black_option = "black_level", o.levels.white_option = "white_level";
+    keys.word(
+        "black-level", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
+        "sample without light of linear pictures, which is subtracted and stored: a value such as 256, a percentage "
+        "such as 6%, or RED:GREEN:BLUE; default 0");
+    keys.word(
+        "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
+        "sample at saturation of linear pictures, as a value such as 4095 or a percentage; default full scale");
     declare_sampling(keys, o.pixels, "300 per image, at least 2000 (radiance: number of points, 150 per image)");
     keys.file("truth", o.compare, "compare the estimates with the true values in truth.json of `simulate`");
 }
@@ -161,6 +172,20 @@ void check_outputs(const BuildOptions &o, std::vector<std::string> reserved) {
     }
 }
 
+// `apply` takes what these files do not hold as options.
+void note_levels(const BuildOptions &o, const lensprof_levels &levels, Events &events) {
+    if (!has_levels(levels)) return;
+    const double *black = levels.black;
+    std::string words = format("%.6g%%", 100.0 * black[0]);
+    if (black[1] != black[0] || black[2] != black[0])
+        words += format(":%.6g%%:%.6g%%", 100.0 * black[1], 100.0 * black[2]);
+    if (levels.white > 0.0) words += format(",white=%.6g%%", 100.0 * levels.white);
+    for (const std::string &file : {o.pto_out, o.exposures_out})
+        if (!file.empty())
+            events.note(
+                file, "does not hold the black and white level; to use it, give `lensprof apply` --set black=" + words);
+}
+
 // Everything that is written of a calibration. The page of the report lacks its verdict.
 void add_outputs(const BuildOptions &o, Calibration &calibration, OutputFiles &outputs, Json &page, Streams &streams,
                  Events &events) {
@@ -173,6 +198,7 @@ void add_outputs(const BuildOptions &o, Calibration &calibration, OutputFiles &o
     if (!o.gain_chart.empty() && !fit.input.points.empty() && is_written)
         outputs.add(o.gain_chart, gain_chart(o.gain_chart, scene.path, gain_curves(fit)));
     if (!o.pto_out.empty() && is_written) outputs.add(o.pto_out, result_text(fit, scene, o.pto_out));
+    if (is_written) note_levels(o, scene.levels, events);
     if (!o.preview.empty() && fit.best.corrects()) write_preview(o.preview, scene, fit.best, events);
     if (!o.report.empty())
         page = fit_page_data({fit.report, fit.input, fit.best, fit.input.images, scene, calibration.metadata,

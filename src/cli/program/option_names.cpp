@@ -8,7 +8,9 @@ std::string option_of(const std::string &name) {
     static const std::map<std::string, std::string> options = {
         {"aperture", "--aperture"},
         {"black", "--black"},
+        {"black_level", "--fit black-level=LEVEL"},
         {"camera", "--camera"},
+        {"camera_kind_linear", "--fit camera-kind=linear"},
         {"card", "--card"},
         {"crop_factor", "--key crop-factor=NUMBER"},
         {"dark", "--dark"},

@@ -152,6 +152,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
     print_minority(report, out);
     if (report.has_falloff) print_falloffs(report, out);
     print_responses(report, out);
+    print_levels(report.levels, out);
     print_gamma(report, out);
     print_prior(report, out);
     if (report.has_falloff) print_lens_prior(fit, out);

@@ -6,6 +6,7 @@
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/pictures/picture_levels.hpp"
 
 namespace lensprof {
 namespace {
@@ -19,14 +20,6 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
                   double(*range.second));
 }
 
-void print_levels(const lensprof_levels &levels, std::ostream &out) {
-    const double *black = levels.black;
-    if (black[0] == 0.0 && black[1] == 0.0 && black[2] == 0.0 && levels.white == 0.0) return;
-    out << format("levels    black %.4g, %.4g, %.4g %% (red, green, blue), white %.4g %% of full scale\n",
-                  100.0 * black[0], 100.0 * black[1], 100.0 * black[2],
-                  levels.white > 0.0 ? 100.0 * levels.white : 100.0);
-}
-
 void print_circle(const lensprof_image_circle &circle, std::ostream &out) {
     if (circle.radius == 0.0) return;
     out << format(
@@ -36,6 +29,13 @@ void print_circle(const lensprof_image_circle &circle, std::ostream &out) {
 }
 
 }  // namespace
+
+void print_levels(const lensprof_levels &levels, std::ostream &out) {
+    if (!has_levels(levels)) return;
+    out << format("levels    black %.4g, %.4g, %.4g %% (red, green, blue), white %.4g %% of full scale\n",
+                  100.0 * levels.black[0], 100.0 * levels.black[1], 100.0 * levels.black[2],
+                  levels.white > 0.0 ? 100.0 * levels.white : 100.0);
+}
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;

@@ -28,6 +28,7 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
 // Parts of tables. `aspect`: width over height of the frame.
 void print_vignettings(const lensprof_profile &profile, std::ostream &out, double aspect = usual_aspect);
 void print_response(const lensprof_response &r, std::ostream &out);
+void print_levels(const lensprof_levels &levels, std::ostream &out);  // nothing without any
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
 

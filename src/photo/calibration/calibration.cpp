@@ -1,4 +1,5 @@
 #include "photo/calibration/calibration.hpp"
+#include "photo/pictures/picture_levels.hpp"
 #include "photo/scene/scene_pictures.hpp"
 
 #include <cmath>
@@ -47,6 +48,8 @@ Calibration::Calibration(Scene of, const SceneFitOptions &o, Events &events)
     choose_unknowns(o.free, scene, events);
     if (o.points.empty() && !scene.is_reconstruction) check_pictures(scene, o.pixels.max_side);
     metadata = picture_metadata(o, scene);
+    scene.levels = scene_levels(o, scene, metadata);
+    if (has_levels(scene.levels) && !scene.is_reconstruction) check_pictures(scene, o.pixels.max_side);  // as floats
     key = profile_key(o, scene, metadata, events);
     check_store(o.store);
     if (uses_stored_prior(o.fit))
@@ -65,6 +68,7 @@ Scene with_result(const Calibration &calibration) {
         scene.images[i].exposure = best.exposures[i];
         auto model = std::shared_ptr<lensprof_profile>(new_profile());
         const auto falloffs = best.falloff_of(i);
+        model->levels = scene.levels;
         model->response[0] = best.response_of(i);
         model->vignettings = best.falloff_curves_of(i);
         std::copy_n(falloffs.begin(), falloffs.size(), model->vignetting);

@@ -8,6 +8,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/pictures/picture_levels.hpp"
 
 namespace lensprof {
 namespace {
@@ -54,9 +55,7 @@ std::vector<std::string> notes_of(const LensFileCost &cost, const std::vector<st
 }
 
 std::string note_of_levels(const lensprof_profile &profile, const std::string &name) {
-    const double *black = profile.levels.black;
-    const bool has_black = std::any_of(black, black + 3, [](double level) { return level != 0.0; });
-    if (!has_black && profile.levels.white == 0.0) return {};
+    if (!has_levels(profile.levels)) return {};
     return name + ": the file does not hold its black and white level; where it is used, the black level must be "
                   "subtracted from the pictures, and white be full scale, before they are corrected";
 }

@@ -73,6 +73,7 @@ std::unique_ptr<lensprof_profile> profile_of_setting(const BuildReport &report, 
                                                      const Storing &how) {
     auto profile = profile_of(*report.held, setting.number);
     profile->key = setting.key;
+    profile->levels = report.levels;
     lensprof_provenance &provenance = profile->provenance;
     provenance.not_usable = !setting.found.usable;
     set_text(provenance.method, sizeof provenance.method, how.method);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "photo/base/parallel.hpp"
+#include "photo/pictures/picture_levels.hpp"
 #include "photo/pictures/thumbnail.hpp"
 #include "photo/scene/exposures.hpp"
 
@@ -49,6 +50,7 @@ CorrectedCopy copy_of(const Scene &scene, uint32_t i, const Fitted &fitted, cons
     lensprof_response linear;
     lensprof_response_set_linear(&linear);
     options.response = &linear, options.vignetting = &none;
+    if (has_levels(scene.levels)) options.levels = &scene.levels;  // 0 is black in what is shown
     options.input = options.output = LENSPROF_ENCODING_LINEAR;
     CorrectedCopy copy;
     copy.image = i;

@@ -9,6 +9,7 @@
 #include "photo/base/lap.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
+#include "photo/pictures/icc.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/scene/block_sampling.hpp"
 #include "photo/scene/point_file.hpp"
@@ -360,6 +361,59 @@ std::vector<PictureMetadata> picture_metadata(const SceneFitOptions &o, const Sc
     return metadata;
 }
 
+// Float samples are shares: counts beyond 1 would be white.
+static void refuse_counts(const StatedLevels &stated, const std::string &file) {
+    std::vector<StatedLevel> all = stated.black;
+    if (stated.white) all.push_back(*stated.white);
+    for (const StatedLevel &level : all)
+        if (!level.is_share && level.number > 1.0)
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          file
+                              + format(": has float samples, of which 1 is full scale, below the stated level of %g; "
+                                       "divide the samples by that at full scale, and state levels as percentages",
+                                       level.number));
+}
+
+static void require_linear(const SceneFitOptions &o, const PictureMetadata &metadata, const Picture &header,
+                           const std::string &file) {
+    const bool is_rendered =
+        !header.icc.empty() && tone_curve_of(header.icc.data(), header.icc.size()) == ToneCurve::other;
+    if (header.traits.is_lossy || is_rendered)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is a rendered picture, and black and white level are those of "
+                                                      "linear ones; omit " + option_name("black_level") + " and "
+                                                   + option_name("white_level"));
+    if (camera_kind_of(o.fit, metadata.key, metadata).kind != LENSPROF_CAMERA_LINEAR)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is not known to be linear, and black and white level are those "
+                                                      "of linear pictures; give " + option_name("camera_kind_linear")
+                                                   + " if it is");
+}
+
+lensprof_levels scene_levels(const SceneFitOptions &o, const Scene &scene,
+                             const std::vector<PictureMetadata> &metadata) {
+    if (!o.levels.any()) return {};
+    if (!o.points.empty() || !scene.pairs.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      (o.points.empty() ? scene.path : o.points)
+                          + ": its values are taken as they are, without black and white level; omit "
+                          + option_name("black_level") + " and " + option_name("white_level")
+                          + ", or give the pictures instead");
+    lensprof_levels levels{};
+    uint32_t sample = 0;
+    for (size_t i = 0; i < scene.files.size(); i++) {
+        stop_if_cancelled();
+        const std::string &file = scene.files[i];
+        const Picture header = read_header(file);
+        require_linear(o, metadata[i], header, file);
+        if (i == 0) sample = header.sample;
+        if (header.sample == LENSPROF_SAMPLE_F32) refuse_counts(o.levels, file);
+        if (header.sample != sample)
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": its samples are of another type than those of "
+                                                       + scene.files[0] + "; give pictures with the same black level");
+        levels = levels_of(o.levels, header, file);
+    }
+    return levels;
+}
+
 // A cropped picture shows the falloff of the lens about another centre, which one falloff for all does not model.
 static void warn_of_other_shapes(const Scene &scene, const std::vector<PictureMetadata> &metadata, Events &events) {
     constexpr double kLargestDifference = 0.01;  // of the ratio of the sides: resized pictures are rounded
@@ -412,6 +466,7 @@ void fit_scene(const SceneFitOptions &o, Scene &scene, const std::vector<Picture
     FitInput &input = state.input;
     report.names = scene.names;
     report.left_out = scene.left_out;
+    report.levels = scene.levels;
     report.register_s = scene.register_s;
     report.reference = o.reference.empty() ? scene.reference : image_of_word(scene, o.reference);
     input.options = scene_options(o, scene, input.fixed);

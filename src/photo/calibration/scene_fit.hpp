@@ -7,6 +7,7 @@
 #include "photo/calibration/fit.hpp"
 #include "photo/calibration/lens_settings.hpp"
 #include "photo/calibration/stored_prior.hpp"
+#include "photo/pictures/stated_levels.hpp"
 #include "photo/scene/scene.hpp"
 
 namespace lensprof {
@@ -18,6 +19,7 @@ struct SceneFitOptions {
     std::string points, reference;
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: chosen by held-out error
     SamplingOptions pixels;
+    StatedLevels levels;    // of the samples of linear pictures
     bool one_lens = false;  // all images are treated as one lens setting
     uint32_t free = 0;      // LENSPROF_FREE_... of every image; 0: according to the project, or all
 };
@@ -39,6 +41,11 @@ struct SceneFit {
 // Metadata of the pictures. If pairs are given, only what the profile key needs is read, because the pictures may be
 // anything.
 std::vector<PictureMetadata> picture_metadata(const SceneFitOptions &o, const Scene &scene);
+
+// The stated levels, of the samples of all pictures. Failure (usage) if the pictures are not linear, are not of one
+// sample type, or are not read.
+lensprof_levels scene_levels(const SceneFitOptions &o, const Scene &scene,
+                             const std::vector<PictureMetadata> &metadata);
 
 // The key of the profile: EXIF of the reference picture, overridden by the command line. With one_lens, warns of
 // pictures at other settings.

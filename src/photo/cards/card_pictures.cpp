@@ -13,6 +13,7 @@
 #include "photo/cards/saturated_samples.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/picture_levels.hpp"
 #include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
@@ -267,39 +268,10 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
                                                     : unknown_black_sigma;
 }
 
-// Failure where a part of a picture lies clearly below the black level: it is too high, and what is darker would pass
-// for what lies outside of an image circle. Means along rows are compared, and by four standard errors, since noise
-// falls below black.
-void require_black_below(const CardInput &input) {
-    constexpr double clearly = 0.1, many = 0.02, noise_sigmas = 4.0;  // of the mean light; of the means
+void require_black_below_cards(const CardInput &input) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
-        const Picture &picture = input.pictures[i];
-        const uint32_t samples = lensprof_layout_samples(picture.layout),
-                       green = lensprof_layout_channels(picture.layout) / 2;
-        const size_t run = std::clamp<size_t>(picture.width / 8, 1, 128);  // samples of a mean
-        std::vector<double> means;
-        double all = 0.0, squares = 0.0;  // of differences of neighbours
-        for (uint32_t y = 0; y < picture.height; y++)
-            for (size_t first = 0; first + run <= picture.width; first += run) {
-                const uint8_t *row = picture.pixels.data() + y * picture.row_bytes;
-                double sum = 0.0, before = sample_value(picture.sample, row, first * samples + green);
-                for (size_t x = first; x < first + run; x++) {
-                    const double sample = sample_value(picture.sample, row, x * samples + green);
-                    sum += sample, squares += (sample - before) * (sample - before), before = sample;
-                }
-                means.push_back(sum / static_cast<double>(run) - input.options.levels.black[1]);
-                all += means.back();
-            }
-        const double count = static_cast<double>(means.size()), of_run = static_cast<double>(run);
-        const double sigma = std::sqrt(0.5 * squares / count) / of_run;
-        const double limit = -clearly * std::max(all / count, 0.0) - noise_sigmas * sigma;
-        const auto below =
-            static_cast<double>(std::count_if(means.begin(), means.end(), [&](double mean) { return mean < limit; }));
-        if (below > many * count)
-            throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                          input.files[i]
-                              + format(": %.0f %% of its samples lie below the black level; state a lower one with %s",
-                                       100.0 * below / count, option_name("black").c_str()));
+        const uint32_t green = lensprof_layout_channels(input.pictures[i].layout) / 2;
+        require_black_below(input.pictures[i], green, input.options.levels, input.files[i], option_name("black"));
     }
 }
 
@@ -395,7 +367,7 @@ void read_cards(const CardOptions &o, CardInput &input, Events &events) {
         image.mask_row_bytes = static_cast<ptrdiff_t>(picture.width);
     }
     take_levels(o, input, events);
-    if (!o.levels.black.empty() || o.dark) require_black_below(input);
+    if (!o.levels.black.empty() || o.dark) require_black_below_cards(input);
     find_saturated(input, events);
     input.options.response = input.response.data();
     input.options.responses = static_cast<uint32_t>(input.response.size());

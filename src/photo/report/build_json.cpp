@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "photo/pictures/picture_levels.hpp"
 #include "photo/report/report.hpp"
 
 namespace lensprof {
@@ -207,6 +208,9 @@ Json build_json(const BuildReport &report) {
                                    {"exposures_only", number_or_null(report.variance.exposures_only)},
                                    {"result", report.variance.result},
                                    {"pairs", report.variance.pairs}};
+    if (has_levels(report.levels))
+        json["levels"] = {{"black", std::vector<double>(report.levels.black, report.levels.black + 3)},
+                          {"white", report.levels.white > 0.0 ? report.levels.white : 1.0}};
     json["gamma_from"] = gamma_name(fit.gamma_from);
     json["gamma"] = gamma_json(report);
     json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},

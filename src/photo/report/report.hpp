@@ -93,6 +93,7 @@ struct BuildReport {
     std::vector<std::pair<std::string, std::string>> left_out;  // pictures left out, and why
     double register_s = 0, load_s = 0, sample_s = 0;
     CameraKind camera_kind;          // kind of camera of the prior on gamma
+    lensprof_levels levels{};        // of the samples of the pictures, as stated; all 0: none
     int64_t profile_id = 0;          // 0 = not stored
     int64_t prior_id = 0;            // id of the profile used as the prior; 0 = none
     std::string no_prior;            // why there was no prior, if one was requested

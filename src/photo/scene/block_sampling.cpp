@@ -78,8 +78,7 @@ BlockSampler::BlockSampler(const Scene &scene, const lensprof_sample_options &op
 uint64_t BlockSampler::bytes_of(uint32_t image) const {
     ReadOptions options;
     options.max_side = max_side_;
-    const Picture header = read_header(scene_.files[image], options);
-    return header.row_bytes * header.height;
+    return bytes_in_memory(scene_, read_header(scene_.files[image], options));
 }
 
 void BlockSampler::read(Block &block) {

@@ -28,6 +28,7 @@ struct Scene {
     std::vector<std::shared_ptr<const lensprof_profile>> models;  // response and falloff, shared by images with the
                                                                   // same; empty: none are known
     uint32_t reference = 0;                                       // image whose exposure is fixed
+    lensprof_levels levels{};                                     // of the samples of all pictures; all 0: none
 
     // The Hugin project it was read from, which has masks and what a scene does not hold; NULL for other scenes.
     Pto document;

@@ -8,6 +8,7 @@
 
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
+#include "photo/pictures/picture_levels.hpp"
 
 namespace lensprof {
 namespace {
@@ -49,6 +50,11 @@ void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduc
     }
 }
 
+uint64_t bytes_in_memory(const Scene &scene, const Picture &header) {
+    const uint64_t row_samples = uint64_t(header.width) * lensprof_layout_samples(header.layout);
+    return header.height * (has_levels(scene.levels) ? row_samples * sizeof(float) : header.row_bytes);
+}
+
 void check_pictures(const Scene &scene, uint32_t max_side) {
     ReadOptions options;
     options.max_side = max_side;
@@ -57,7 +63,7 @@ void check_pictures(const Scene &scene, uint32_t max_side) {
         stop_if_cancelled();
         const Picture header = read_header(scene.files[i], options);
         check_size(scene, i, header);
-        needed += header.row_bytes * header.height;
+        needed += bytes_in_memory(scene, header);
         if (scene.document) needed += uint64_t(header.width) * header.height;  // its mask
     }
     const uint64_t bound = available_memory();
@@ -79,6 +85,9 @@ SamplePicture read_sample_picture(const Scene &scene, uint32_t i, uint32_t max_s
     const Picture &p = result.picture;
     check_size(scene, i, p);
     check_finite(result.picture.view(), 0, p.reduction, file);
+    for (uint32_t c = 0; c < lensprof_layout_channels(p.layout) && has_levels(scene.levels); c++)
+        require_black_below(p, c, scene.levels, file, option_name("black_level"));
+    if (has_levels(scene.levels)) remove_levels(scene.levels, result.picture);
     result.mask = mask_of(scene, i, p.width, p.height);
     return result;
 }

@@ -19,13 +19,17 @@ struct SamplePicture {
 // Maximum memory for the reduced pictures of a scene with their masks.
 constexpr uint64_t scene_max_bytes = uint64_t(8) << 30;
 
+// Bytes of the pixels of a picture that read_sample_picture returns.
+uint64_t bytes_in_memory(const Scene &scene, const Picture &header);
+
 // Checks the headers before the first picture is loaded. Failure (unreadable) if a picture is missing, unreadable or of
 // another size than the scene states, or if all pictures, reduced to `max_side`, need more memory than
 // scene_max_bytes or than the machine has.
 void check_pictures(const Scene &scene, uint32_t max_side);
 
-// Reads a picture, reduced to a longer side of at least `max_side` pixels. Failure with the file name for a size that
-// contradicts the scene, an unreadable file, and float samples that are not finite.
+// Reads a picture, reduced to a longer side of at least `max_side` pixels, with the scene's levels removed. Failure
+// with the file name for a size that contradicts the scene, an unreadable file, float samples that are not finite, and
+// samples below the black level.
 SamplePicture read_sample_picture(const Scene &scene, uint32_t image, uint32_t max_side);
 
 // The same for all pictures, several in parallel.
