@@ -118,28 +118,38 @@ static double own_at(const lp_sensor_source *s, uint32_t plane, uint32_t column,
     return r->gains ? (double)r->gains[(plane * r->rows + row) * r->columns + column] : 1.0;
 }
 
+/* Of the gains of light at the nodes of a plane. */
+typedef struct gain_range {
+    double least, most;
+} gain_range;
+
 /* The gain of light at a node, of the nodes as the plan counts them. Half of the excess is subtracted, so that a cell
- * is too bright in its middle by what it is too dark at its corners; but not below `least`, the smallest gain, at which
- * highlights are clipped. */
-static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, double least) {
+ * is too bright in its middle by what it is too dark at its corners; but not beyond the range of the gains: at the
+ * least one highlights are clipped, and the largest one has the largest integer. */
+static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, gain_range range) {
     const lensprof_readout *r = &s->readout;
     if (lp_readout_is_flipped(r, 0)) column = r->columns - 1 - column;
     if (lp_readout_is_flipped(r, 1)) row = r->rows - 1 - row;
     const double exact = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
     const double excess = excess_at(s, plane, column, row, 0) + excess_at(s, plane, column, row, 1);
-    const double gain = fmax(exact - 0.5 * excess, least);
-    return gain * own_at(s, plane, column, row);
+    const double gain = fmax(exact - 0.5 * excess, range.least);
+    return (gain < range.most ? gain : range.most) * own_at(s, plane, column, row);
 }
 
-/* Over the nodes of a plane: the smallest gain of light, and the largest with the readout's own. */
-static void find_extremes(const lp_sensor_source *s, uint32_t plane, double *least, double *largest) {
-    *least = lp_sensor_gain(s, plane, 0.0, 0.0), *largest = 0.0;
+/* *largest receives the bound of the gains with the readout's own. */
+static gain_range find_range(const lp_sensor_source *s, uint32_t plane, double *largest) {
+    const double first = lp_sensor_gain(s, plane, 0.0, 0.0);
+    gain_range range = {first, first};
+    double own = 0.0;
     for (uint32_t row = 0; row < s->readout.rows; row++)
         for (uint32_t column = 0; column < s->readout.columns; column++) {
             const double gain = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
-            if (gain < *least) *least = gain;
-            *largest = fmax(*largest, gain * own_at(s, plane, column, row));
+            if (gain < range.least) range.least = gain;
+            range.most = fmax(range.most, gain);
+            own = fmax(own, own_at(s, plane, column, row));
         }
+    *largest = range.most * own;
+    return range;
 }
 
 /* The finest unit in which gains of codes fit; 0 = none does. */
@@ -150,13 +160,13 @@ static uint32_t shift_of(double largest) {
 }
 
 /* Writes the nodes of a plane. Returns the smallest gain of light among them. */
-static double write_nodes(lensprof_sensor_plan *plan, const lp_sensor_source *s, uint32_t plane, double least) {
+static double write_nodes(lensprof_sensor_plan *plan, const lp_sensor_source *s, uint32_t plane, gain_range range) {
     uint32_t *node = (uint32_t *)(void *)(plan + 1) + plane * lp_sensor_grid_nodes(&plan->grid);
     const double units = lp_sensor_span(s, LP_OUTPUT, plane) / lp_sensor_span(s, LP_INPUT, plane);
     double smallest = 1.0;
     for (uint32_t row = 0; row < plan->grid.rows; row++)
         for (uint32_t column = 0; column < plan->grid.columns; column++, node++) {
-            const double gain = node_at(s, plane, column, row, least);
+            const double gain = node_at(s, plane, column, row, range);
             const double rounded = floor(gain * units * (double)(1u << plan->shift[plane]) + 0.5);
             if (gain < smallest) smallest = gain;
             *node = rounded < 1.0 ? 1 : (uint32_t)rounded;
@@ -196,13 +206,14 @@ lensprof_status lensprof_sensor_plan_init(void *memory, size_t size, const lensp
     if (status != LENSPROF_OK) return status;
     const size_t bytes = bytes_of_nodes(lp_readout_nodes(&source.readout));
     if (size < bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
-    double least[LENSPROF_SENSOR_PLANES], smallest = 1.0;
+    gain_range range[LENSPROF_SENSOR_PLANES];
+    double smallest = 1.0;
     uint8_t shift[LENSPROF_SENSOR_PLANES] = {LP_SENSOR_LEAST_SHIFT, LP_SENSOR_LEAST_SHIFT, LP_SENSOR_LEAST_SHIFT,
                                              LP_SENSOR_LEAST_SHIFT};
     const uint32_t planes = lp_readout_planes(&source.readout);
     for (uint32_t p = 0; p < planes; p++) {
         double largest;
-        find_extremes(&source, p, &least[p], &largest);
+        range[p] = find_range(&source, p, &largest);
         shift[p] =
             (uint8_t)shift_of(largest * lp_sensor_span(&source, LP_OUTPUT, p) / lp_sensor_span(&source, LP_INPUT, p));
         if (!shift[p]) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "gains of 4096 or more");
@@ -213,7 +224,7 @@ lensprof_status lensprof_sensor_plan_init(void *memory, size_t size, const lensp
     plan->grid = lp_readout_grid(&source.readout, source.options.frame_width, source.options.frame_height);
     memcpy(plan->shift, shift, sizeof shift);
     for (uint32_t p = 0; p < planes; p++) {
-        const double of_plane = write_nodes(plan, &source, p, least[p]);
+        const double of_plane = write_nodes(plan, &source, p, range[p]);
         if (of_plane < smallest) smallest = of_plane;
     }
     prepare_levels(plan, &source, smallest);

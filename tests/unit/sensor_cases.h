@@ -89,19 +89,22 @@ static double half_excess(const sensor_case *c, char letter, uint32_t column, ui
     return sum / count / 2;
 }
 
-/* Gains at the nodes of the grid, with the caller's own. The excess of their neighbours is subtracted, not below the
- * smallest gain of all nodes. */
+/* Gains at the nodes of the grid, with the caller's own. The excess of their neighbours is subtracted, not beyond the
+ * range of the gains of all nodes. */
 static void find_node_gains(sensor_case *c, char letter) {
     const lensprof_readout *r = &c->readout;
     const uint32_t plane = plane_of(c, letter);
-    double least = gain_between(c, letter, 0, 0);
+    double least = gain_between(c, letter, 0, 0), most = least;
     for (uint32_t j = 0; j < r->rows; j++)
-        for (uint32_t i = 0; i < r->columns; i++) least = fmin(least, gain_between(c, letter, i, j));
+        for (uint32_t i = 0; i < r->columns; i++) {
+            least = fmin(least, gain_between(c, letter, i, j));
+            most = fmax(most, gain_between(c, letter, i, j));
+        }
     for (uint32_t j = 0; j < r->rows; j++)
         for (uint32_t i = 0; i < r->columns; i++) {
             const double excess = half_excess(c, letter, i, j, 0) + half_excess(c, letter, i, j, 1);
             const double own = r->gains ? (double)r->gains[(plane * r->rows + j) * r->columns + i] : 1.0;
-            c->node_gain[plane][j][i] = own * fmax(least, gain_between(c, letter, i, j) - excess);
+            c->node_gain[plane][j][i] = own * fmin(most, fmax(least, gain_between(c, letter, i, j) - excess));
         }
 }
 

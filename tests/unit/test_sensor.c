@@ -25,7 +25,9 @@ static void test_codes_are_within_one_of_double_precision(void **state) {
     uint64_t random = 5, count = 0, same = 0;
     const int runs = campaign_runs(1500);
     for (int n = 0; n < runs; n++) {
+        const lensprof_sensor_plan *opened;
         make_sensor(&c, &random);
+        assert_ok(lensprof_sensor_plan_open(c.memory, c.plan->bytes, &opened));
         apply_case(&c);
         for (uint32_t y = 0; y < SENSOR_ROWS; y++)
             for (uint32_t x = 0; x < SENSOR_WIDTH; x++, count++) {
