@@ -123,7 +123,8 @@ static const char *fit_plane(const lensprof_sensor_flat *flat, uint32_t plane, s
     if (!solve(s, light, r, p, product, count)) return "the flat field cannot be fitted";
     for (uint32_t i = 0; i < count; i++) light[i] -= flat->black[plane];
     const double largest = largest_of(light, count);
-    if (!(largest >= LEAST_LIGHT * (flat->white - flat->black[plane]))) return "the flat field is dark: expose more, or state its white level";
+    if (!(largest >= LEAST_LIGHT * (flat->white - flat->black[plane])))
+        return "the flat field is dark: expose more, or state its white level";
     for (uint32_t i = 0; i < count; i++)
         if (!(light[i] * LARGEST_GAIN >= largest)) return "the flat field is black in a part of the frame";
     return NULL;

@@ -77,13 +77,19 @@ class Fixed(unittest.TestCase):
             again = lp.FixedPlan.open(plan.data, lp.Layout.RGGB).apply(array, np.empty_like(result))
             np.testing.assert_array_equal(again, result)
 
+    def test_gain_grid(self):
+        fields = options(grid=lp.GainGrid([[0.5, 0.8, 0.6], [0.9, 1.0, 0.7]]), strength=0.8)
+        array = picture(np.uint8)
+        difference = lp.FixedPlan(fields).apply(array).astype(int) - lp.Plan(fields).apply(array)
+        self.assertLessEqual(np.abs(difference).max(), 1)
+
     def test_what_is_refused(self):
         plan = lp.FixedPlan(options())
         self.assertLess(len(plan.data), 5000)
         for bad in (plan.data[:-4], plan.data[:20], b"", plan.data[:-1] + bytes([plan.data[-1] ^ 1])):
             with self.assertRaises(lp.Error):
                 lp.FixedPlan.open(bad, lp.Layout.RGB)
-        for fields in ({"source_sample": lp.SampleType.F32}, {"grid": lp.GainGrid([[0.5, 0.5], [0.5, 0.5]])}):
+        for fields in ({"source_sample": lp.SampleType.F32}, {"dither": True}):
             with self.assertRaises(lp.Error):
                 lp.FixedPlan(options(**fields))
         with self.assertRaises(lp.Error):

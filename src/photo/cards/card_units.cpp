@@ -7,6 +7,7 @@
 #include <set>
 
 #include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -168,10 +169,13 @@ void note_doubles(UnitRule::By by, const std::vector<CardPicture> &pictures, Eve
 std::vector<fs::path> unit_folders(const std::vector<std::string> &names) {
     std::vector<fs::path> given, folders;
     for (const std::string &name : names)
-        if (fs::is_directory(name)) given.push_back(fs::path(name).lexically_normal());
+        if (is_folder(name)) given.push_back(fs::path(name).lexically_normal());
     if (given.size() != 1) return given;
-    for (const fs::directory_entry &entry : fs::directory_iterator(given.front()))
-        if (entry.is_directory() && entry.path().filename().string().front() != '.') folders.push_back(entry.path());
+    std::error_code ignored;  // a folder that cannot be listed was reported when its pictures were looked for
+    for (const fs::directory_entry &entry : fs::directory_iterator(given.front(), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (is_folder(entry.path().string()) && name.front() != '.') folders.push_back(entry.path());
+    }
     std::sort(folders.begin(), folders.end());
     return folders;
 }
