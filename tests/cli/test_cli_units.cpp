@@ -255,14 +255,12 @@ void test_middles(void **) {
     assert_true(std::isnan(middle_of({1.0, NAN, NAN}).median));
 }
 
-}  // namespace
-
 // A fit leaves out what is black, and continues the falloff there: such units do not pass.
 void test_covered_units(void **) {
     Module covered, circle;
     covered.covered = 0.12, circle.circle = 0.7;
-    const std::string folder = make_units("covered", 8, {{0, circle}, {5, covered}}), db = in_folder("covered.db");
-    const Json json = parsed(must_exit(not_usable, units_of(folder, {"--units", "by=folder", "--db", db, "--json"})));
+    const std::string line = make_units("covered", 8, {{0, circle}, {5, covered}}), db = in_folder("covered.db");
+    const Json json = parsed(must_exit(not_usable, units_of(line, {"--units", "by=folder", "--db", db, "--json"})));
     const Json &batch = json["batches"][0];
     for (const char *name : {"u00", "u05"}) {
         const Json unit = unit_named(batch, name);
@@ -273,28 +271,30 @@ void test_covered_units(void **) {
         assert_true(unit_named(batch, name)["verdict"] == "pass");
     const std::string shown = must_exit(0, {"profile", "show", "1", "--db", db});
     assert_true(contains(shown, "flat") && !contains(shown, "image circle"));
-    const Json alone = parsed(must_exit(
-        not_usable, units_of(folder, {"--units", "by=folder,against=1", "--db", db, "--no-store", "--json"})));
+    const Json alone = parsed(
+        must_exit(not_usable, units_of(line, {"--units", "by=folder,against=1", "--db", db, "--no-store", "--json"})));
     for (const char *name : {"u00", "u05"}) assert_true(unit_named(alone["batches"][0], name)["verdict"] == "fail");
 }
 
 // A folder without a picture that can be used is a unit that was not measured.
 void test_units_without_pictures(void **) {
-    const std::string folder = make_units("absent", 4), csv = in_folder("absent.csv");
-    std::filesystem::create_directory(folder + "/u90");
-    std::filesystem::create_directory(folder + "/u91");
-    std::ofstream(folder + "/u91/card.tif") << "no picture";
+    const std::string line = make_units("absent", 4), csv = in_folder("absent.csv");
+    std::filesystem::create_directory(line + "/u90");
+    std::filesystem::create_directory(line + "/u91");
+    std::ofstream(line + "/u91/card.tif") << "no picture";
     const Json json =
-        parsed(must_exit(not_usable, units_of(folder, {"--units", "by=folder", "-o", csv, "--no-store", "--json"})));
+        parsed(must_exit(not_usable, units_of(line, {"--units", "by=folder", "-o", csv, "--no-store", "--json"})));
     assert_int_equal(json["without_pictures"].size(), 2);
     assert_true(json["without_pictures"][0]["unit"] == "u90" && json["without_pictures"][1]["unit"] == "u91");
     assert_true(contains(json["without_pictures"][1]["reason"].get<std::string>(), "card.tif"));
     const std::string rows = text_of(csv);
     assert_true(contains(rows, "\nu90,,,,,0,not measured,") && contains(rows, "\nu91,,,,,0,not measured,"));
-    const auto commas = [](const std::string &line) { return std::count(line.begin(), line.end(), ','); };
+    const auto commas = [](const std::string &row) { return std::count(row.begin(), row.end(), ','); };
     assert_int_equal(commas(rows.substr(0, rows.find('\n'))),
                      commas(rows.substr(rows.find("\nu90"), rows.find("\nu91") - rows.find("\nu90"))));
 }
+
+}  // namespace
 
 int main() {
     const CMUnitTest tests[] = {

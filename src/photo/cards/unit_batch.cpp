@@ -7,8 +7,8 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t green = 1, longer_count = 25;
-constexpr size_t least_units = 3;  // of two that differ, nobody can tell which is unusual
+constexpr uint32_t green = 1, compared_places = 25;  // along the longer side
+constexpr size_t least_units = 3;                    // of two that differ, nobody can tell which is unusual
 
 // A unit that was measured.
 struct MeasuredUnit {
@@ -279,7 +279,7 @@ std::vector<MeasuredUnit> measured_units(const std::vector<MeasuredSetting> &set
 
 void compare_batch(const std::vector<MeasuredSetting> &settings, const UnitLimits &limits,
                    const lensprof_profile *reference, UnitBatch &batch) {
-    batch.lattice = lattice_of(usual_shape(settings, batch), longer_count, false);
+    batch.lattice = lattice_of(usual_shape(settings, batch), compared_places, false);
     const std::vector<MeasuredUnit> units = measured_units(settings, batch);
     if (units.empty()) return;
     if (reference) {
