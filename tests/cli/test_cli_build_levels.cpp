@@ -64,6 +64,14 @@ void test_pedestal(void **) {
     assert_true(error_of(stated) < 0.01);
     assert_same_exposures(stated, expected);
     assert_true(error_of(without) > 0.03);
+    // A forgotten one is noted, with its level in the file; others are not.
+    const auto printed = [](const std::string &path, const std::string &levels) {
+        return run_words(build(path, {"--no-store", "--json", "--fit", levels})).err;
+    };
+    assert_true(contains(printed(pedestal, "white-level=4095"), "black level of about 0.39 % of full scale"));
+    assert_true(contains(printed(pedestal, "black-level=128,white-level=4095"), "black level of about 0.39 %"));
+    assert_false(contains(printed(pedestal, "black-level=256,white-level=4095"), "black level"));
+    assert_false(contains(printed(plain, "seed=1"), "black level"));
     assert_close(stated["levels"]["black"][1].get<double>(), 256.0 / 65535.0, 1e-9);
     assert_close(stated["levels"]["white"].get<double>(), kSpan, 1e-9);
     assert_false(expected.contains("levels"));

@@ -9,6 +9,7 @@
 #include "photo/base/lap.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
+#include "photo/calibration/pedestal.hpp"
 #include "photo/pictures/icc.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/scene/block_sampling.hpp"
@@ -276,6 +277,17 @@ std::string images_of_visit(const Scene &scene, const BuildReport &report, uint3
     return listed(images, scene.names);
 }
 
+// A pedestal in linear pictures passes for smaller differences of exposure and falloff.
+void warn_of_pedestal(const Scene &scene, const SceneFit &state, Events &events) {
+    const auto found = find_pedestal(state.input.pairs, state.input.images);
+    if (!found) return;
+    const double sample = lensprof_levels_to_sample(&scene.levels, 1, found->level);
+    events.warn(scene.path,
+                format("dark and bright parts agree better with a black level of about %.2g %% of full scale; measure "
+                       "it with the lens covered, and state it with %s; or the pictures are not linear",
+                       100.0 * sample, option_name("black_level").c_str()));
+}
+
 // What the fit of a reconstruction found of colours, and of light.
 void report_scene(const Scene &scene, SceneFit &state) {
     if (state.input.points.empty() || !state.input.options.free) return;
@@ -489,6 +501,9 @@ void fit_scene(const SceneFitOptions &o, Scene &scene, const std::vector<Picture
     state.item = o.points.empty() ? scene.path : o.points;
     set_settings(o, state, events);
     set_lens_facts(metadata, input.images);
+    const bool is_linear = report.camera_kind.kind == LENSPROF_CAMERA_LINEAR;
+    if (is_linear && o.points.empty() && scene.pairs.empty() && !state.settings.has_several_settings())
+        warn_of_pedestal(scene, state, events);
     input.options.moving_camera = scene.by_matches;
     input.options.unlinked_images = static_cast<uint32_t>(scene.is_reconstruction ? 0 : scene.unlinked);
     if (o.points.empty()) report.exif = add_known_exposures(o.fit, scene, metadata, input.images, events);
