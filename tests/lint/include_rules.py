@@ -104,6 +104,7 @@ ROOMS = {
 
 # Headers that only a single room may use.
 ROOM_HEADERS = {
+    "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
     "src/photo/registration": {"Eigen/*", "opencv2/*"},
     "src/photo/reconstruction": {"sqlite3.h"},
     "src/cli/fitting": {"zip.h"},
