@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/fixed_plan.h"
+#include "core/gain_grid.h"
 #include "core/response.h"
 
 #define LARGEST_FACTOR (51 << LP_LOG_SHIFT) /* options allow 1e12, levels 1e3, and their inverses */
@@ -43,14 +44,13 @@ static int is_reach_sound(const lensprof_fixed_plan *plan) {
 
 static uint32_t size_of(int32_t value) { return value < 0 ? 0u - (uint32_t)value : (uint32_t)value; }
 
-static int is_side(uint32_t nodes) { return nodes >= 2 && nodes <= LENSPROF_GRID_SIDE; }
-
 /* The largest node, or 1 in the grid's units if there is no grid; 0 if the grid is wrong. */
 static uint32_t largest_node(const lensprof_fixed_plan *plan) {
     const lp_fixed_grid *grid = &plan->grid;
     const uint32_t sides[2] = {plan->frame_width, plan->frame_height}, nodes[2] = {grid->columns, grid->rows};
     if (!grid->columns) return grid->rows || grid->channels ? 0 : 1u << grid->shift;
-    if (!LP_HAS_FIXED_GRID || !is_side(grid->columns) || !is_side(grid->rows) || !is_one_or_three(grid->channels))
+    if (!LP_HAS_FIXED_GRID || !lp_is_grid_side(grid->columns) || !lp_is_grid_side(grid->rows)
+        || !is_one_or_three(grid->channels))
         return 0;
     if (grid->strength > 1u << LP_STRENGTH_SHIFT || sides[0] > LP_SENSOR_LARGEST_SIDE
         || sides[1] > LP_SENSOR_LARGEST_SIDE)

@@ -70,8 +70,7 @@ struct lensprof_fixed_plan {
 
 /* The first and last pixel of a side have the first and last node. */
 static inline lp_sensor_axis lp_fixed_grid_axis(uint32_t pixels, uint32_t nodes) {
-    const uint32_t whole = pixels > 1 ? pixels - 1 : 1;
-    return (lp_sensor_axis){0, nodes - 1, whole, ((1u << LP_SENSOR_PART_SHIFT) + whole / 2) / whole};
+    return lp_sensor_axis_of(0, nodes - 1, pixels > 1 ? pixels - 1 : 1);
 }
 
 /* Nodes of the grid, in words of the plan. */

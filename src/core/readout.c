@@ -135,9 +135,7 @@ static lp_sensor_axis axis_of(const lensprof_readout *r, int axis, uint32_t fram
     const uint32_t samples = axis ? r->height : r->width, before = axis ? r->y : r->x;
     const uint32_t cells = (axis ? r->rows : r->columns) - 1;
     const uint32_t first = lp_readout_is_flipped(r, axis) ? frame - before - samples * r->step : before;
-    const uint32_t whole = 2 * (frame - 1);
-    return (lp_sensor_axis){(2 * first + r->step - 1) * cells, 2 * r->step * cells, whole,
-                            ((1u << LP_SENSOR_PART_SHIFT) + whole / 2) / whole};
+    return lp_sensor_axis_of((2 * first + r->step - 1) * cells, 2 * r->step * cells, 2 * (frame - 1));
 }
 
 lp_sensor_grid lp_readout_grid(const lensprof_readout *r, uint32_t frame_width, uint32_t frame_height) {

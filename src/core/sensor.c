@@ -44,7 +44,7 @@ static void correct_plane(const lensprof_sensor_plan *plan, const uint16_t *from
                           uint32_t count, uint32_t y) {
     const lp_sensor_axis *across = &plan->grid.axis[0];
     const lp_sensor_place row = lp_sensor_place_at(&plan->grid.axis[1], plan->grid.rows, y);
-    const uint32_t plane = plan->grid.plane[y % plan->grid.side * plan->grid.side + x % plan->grid.side];
+    const uint32_t plane = lp_sensor_plane_at(&plan->grid, x, y);
     const uint32_t *nodes = lp_sensor_nodes(plan, plane) + row.node * plan->grid.columns;
     const uint32_t down = row.rest * plan->grid.axis[1].per_whole, stride = across->step * plan->grid.side;
     const constants of = constants_of(plan, plane);
@@ -57,11 +57,7 @@ static void correct_plane(const lensprof_sensor_plan *plan, const uint16_t *from
         const int32_t rise = (int32_t)((rise_part + (1 << (LP_SENSOR_PART_SHIFT - 1))) >> LP_SENSOR_PART_SHIFT);
         const uint32_t first_part = (place.rest - before * stride) * across->per_whole;
         const int32_t gain = lp_sensor_between(left, right, first_part) + (int32_t)before * rise;
-        uint32_t here = count;
-        if (place.node < plan->grid.columns - 2) {
-            here = (across->whole - place.rest + stride - 1) / stride;
-            if (here > count) here = count;
-        }
+        const uint32_t here = lp_sensor_in_cell(across, plan->grid.columns, place, stride, count);
         correct_cell(&of, from, to, here, gain, rise);
         from += here * plan->grid.side, to += here * plan->grid.side, count -= here;
         place.node++, place.rest += here * stride - across->whole;

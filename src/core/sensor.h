@@ -22,6 +22,10 @@ typedef struct lp_sensor_axis {
     uint32_t per_whole; /* 2^31 / whole, to nearest */
 } lp_sensor_axis;
 
+static inline lp_sensor_axis lp_sensor_axis_of(uint32_t first, uint32_t step, uint32_t whole) {
+    return (lp_sensor_axis){first, step, whole, ((1u << LP_SENSOR_PART_SHIFT) + whole / 2) / whole};
+}
+
 /* The samples of a readout and the nodes among them. */
 typedef struct lp_sensor_grid {
     uint32_t width, height; /* samples of a row, and rows */
@@ -57,6 +61,11 @@ static inline const uint32_t *lp_sensor_nodes(const lensprof_sensor_plan *plan, 
     return (const uint32_t *)(const void *)(plan + 1) + plane * lp_sensor_grid_nodes(&plan->grid);
 }
 
+/* The plane of a sample. */
+static inline uint32_t lp_sensor_plane_at(const lp_sensor_grid *grid, uint32_t x, uint32_t y) {
+    return grid->plane[y % grid->side * grid->side + x % grid->side];
+}
+
 static inline int lp_is_sensor_grid_side(uint32_t nodes) { return nodes >= 2 && nodes <= LENSPROF_SENSOR_GRID_SIDE; }
 
 /* The node before a position, which has a node after it, and the rest of the way, 0..whole. */
@@ -75,6 +84,13 @@ static inline lp_sensor_place lp_sensor_place_at(const lp_sensor_axis *axis, uin
 static inline void lp_sensor_next(const lp_sensor_axis *axis, uint32_t nodes, lp_sensor_place *place) {
     place->rest += axis->step;
     while (place->rest >= axis->whole && place->node < nodes - 2) place->rest -= axis->whole, place->node++;
+}
+
+/* How many of `count` samples, which are `stride` apart in units of the axis, lie before the next node. */
+static inline uint32_t lp_sensor_in_cell(const lp_sensor_axis *axis, uint32_t nodes, lp_sensor_place place,
+                                         uint32_t stride, uint32_t count) {
+    const uint32_t here = place.node < nodes - 2 ? (axis->whole - place.rest + stride - 1) / stride : count;
+    return here < count ? here : count;
 }
 
 /* From one gain towards the next by a part in 2^-31. */

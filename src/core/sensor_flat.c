@@ -80,15 +80,11 @@ static void add_plane(lensprof_sensor_flat *flat, const uint16_t *from, uint32_t
     const lp_sensor_axis *across = &grid->axis[0];
     const lp_sensor_place row = lp_sensor_place_at(&grid->axis[1], grid->rows, y);
     const uint32_t down = lp_flat_part(&grid->axis[1], row.rest), stride = across->step * grid->side;
-    const uint32_t plane = grid->plane[y % grid->side * grid->side + x % grid->side];
-    uint64_t *above = lp_flat_sums(flat, plane) + row.node * grid->columns, *below = above + grid->columns;
+    uint64_t *above = lp_flat_sums(flat, lp_sensor_plane_at(grid, x, y)) + row.node * grid->columns,
+             *below = above + grid->columns;
     lp_sensor_place place = lp_sensor_place_at(across, grid->columns, x);
     while (count) {
-        uint32_t here = count;
-        if (place.node < grid->columns - 2) {
-            here = (across->whole - place.rest + stride - 1) / stride;
-            if (here > count) here = count;
-        }
+        const uint32_t here = lp_sensor_in_cell(across, grid->columns, place, stride, count);
         const cell_sums sums = add_cell(across, from, here, grid->side, place.rest);
         const uint64_t left = sums.of_samples * LP_FLAT_ONE - sums.of_parts;
         above[place.node] += left * (LP_FLAT_ONE - down), above[place.node + 1] += sums.of_parts * (LP_FLAT_ONE - down);

@@ -29,7 +29,7 @@ static int is_axis_sound(const lp_sensor_axis *axis, uint32_t nodes, uint32_t sa
     const uint64_t last = axis->first + (uint64_t)(samples - 1) * axis->step, stride = (uint64_t)axis->step * side;
     return last <= (uint64_t)axis->whole * (nodes - 1) && stride <= axis->whole
            && axis->whole <= stride * LP_SENSOR_LARGEST_CELL
-           && axis->per_whole == ((1u << LP_SENSOR_PART_SHIFT) + axis->whole / 2) / axis->whole;
+           && axis->per_whole == lp_sensor_axis_of(axis->first, axis->step, axis->whole).per_whole;
 }
 
 int lp_sensor_grid_is_sound(const lp_sensor_grid *grid) {

@@ -98,11 +98,12 @@ static double pixel_at(const lp_sensor_source *s, int axis, double node) {
     return last * node / ((axis ? s->readout.rows : s->readout.columns) - 1.0);
 }
 
-/* By how much a straight line between the gain at a node and that of its neighbours is above the gain in the middle;
- * mean of the neighbours on an axis. */
-static double excess_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, int axis) {
+/* By how much a straight line between `gain`, that at a node, and that of its neighbours is above the gain in the
+ * middle; mean of the neighbours on an axis. */
+static double excess_at(const lp_sensor_source *s, uint32_t plane, uint32_t column, uint32_t row, int axis,
+                        double gain) {
     const uint32_t at = axis ? row : column, nodes = axis ? s->readout.rows : s->readout.columns;
-    const double x = pixel_at(s, 0, column), y = pixel_at(s, 1, row), gain = lp_sensor_gain(s, plane, x, y);
+    const double x = pixel_at(s, 0, column), y = pixel_at(s, 1, row);
     double excess = 0.0;
     for (int side = -1; side <= 1; side += 2) {
         if (side < 0 ? at == 0 : at + 1 == nodes) continue;
@@ -131,7 +132,7 @@ static double node_at(const lp_sensor_source *s, uint32_t plane, uint32_t column
     if (lp_readout_is_flipped(r, 0)) column = r->columns - 1 - column;
     if (lp_readout_is_flipped(r, 1)) row = r->rows - 1 - row;
     const double exact = lp_sensor_gain(s, plane, pixel_at(s, 0, column), pixel_at(s, 1, row));
-    const double excess = excess_at(s, plane, column, row, 0) + excess_at(s, plane, column, row, 1);
+    const double excess = excess_at(s, plane, column, row, 0, exact) + excess_at(s, plane, column, row, 1, exact);
     const double gain = fmax(exact - 0.5 * excess, range.least);
     return (gain < range.most ? gain : range.most) * own_at(s, plane, column, row);
 }

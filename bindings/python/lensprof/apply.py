@@ -91,6 +91,19 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
                           _image_circle=pointed("image_circle", shown.image_circle))
 
 
+def _apply_tile(apply: Any, plan: Any, layout: Layout, source: Pixels, out: Optional[Pixels], dtype: Any, x0: int,
+                y0: int) -> Pixels:
+    """By the function `apply` of the library; to an array of `dtype` (None: of the source's) unless out is given."""
+    view = _arrays.image(source, layout, what="source")
+    if out is None:
+        out = np.empty(source.shape, dtype=dtype or source.dtype)
+    target = _arrays.target(out, layout)
+    check(apply(plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
+          f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have the "
+          "plan's sample types, the same size, lie in the frame, and be the same array or apart")
+    return out
+
+
 def _apply_packed(apply: Any, plan: Any, source: Pixels, packing: Packing, width: int, out: Optional[Pixels], x0: int,
                   y0: int) -> Pixels:
     """By the function `apply` of the library."""
@@ -123,14 +136,7 @@ class Plan:
 
         out: an array of the tile's shape and the target's type; `source` itself to work in place; a new one when None.
         """
-        view = _arrays.image(source, self._layout, what="source")
-        if out is None:
-            out = np.empty(source.shape, dtype=self._target_dtype)
-        target = _arrays.target(out, self._layout)
-        check(lib.lensprof_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
-              f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
-              "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
-        return out
+        return _apply_tile(lib.lensprof_apply, self._plan, self._layout, source, out, self._target_dtype, x0, y0)
 
     def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
                      y0: int = 0) -> Pixels:
@@ -187,13 +193,7 @@ class FixedPlan:
 
     def apply(self, source: Pixels, out: Optional[Pixels] = None, *, x0: int = 0, y0: int = 0) -> Pixels:
         """As Plan.apply."""
-        view = _arrays.image(source, self._layout, what="source")
-        out = np.empty(source.shape, dtype=self._target_dtype or source.dtype) if out is None else out
-        target = _arrays.target(out, self._layout)
-        check(lib.lensprof_fixed_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
-              f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
-              "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
-        return out
+        return _apply_tile(lib.lensprof_fixed_apply, self._plan, self._layout, source, out, self._target_dtype, x0, y0)
 
     def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
                      y0: int = 0) -> Pixels:

@@ -14,7 +14,7 @@ from ._abi import Flip, Layout, Packing
 from ._library import check, lib
 from ._struct import Enumerated, OptionalReference, Struct, Value, Vector, _Field, default, integer
 from ._types import Pixels
-from .apply import ApplyOptions, _apply_packed
+from .apply import ApplyOptions, _apply_packed, _apply_tile
 
 
 class SensorLevels(Value, _abi.SensorLevels):
@@ -142,13 +142,7 @@ class SensorPlan:
 
         out: an array of the tile's shape; `source` itself to work in place; a new one when None.
         """
-        view = _arrays.image(source, Layout.GREY, what="source")
-        out = np.empty_like(source) if out is None else out
-        target = _arrays.target(out, Layout.GREY)
-        check(lib.lensprof_sensor_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
-              f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must be of "
-              "uint16, the same size, lie in the readout, and be the same array or apart")
-        return out
+        return _apply_tile(lib.lensprof_sensor_apply, self._plan, Layout.GREY, source, out, None, x0, y0)
 
     def apply_packed(self, source: Pixels, packing: Packing, width: int, out: Optional[Pixels] = None, *, x0: int = 0,
                      y0: int = 0) -> Pixels:

@@ -19,12 +19,6 @@
 namespace lensprof {
 namespace {
 
-// " at 2850 K"; empty if it is unknown.
-std::string temperature_text(const lensprof_profile_key &key, const char *before) {
-    return key.color_temperature_k == LENSPROF_UNKNOWN ? std::string()
-                                                       : before + format("%g K", key.color_temperature_k);
-}
-
 std::string missing_text(const LensCards &cards) {
     std::string text;
     double focal = 0.0;
@@ -129,6 +123,14 @@ std::string lens_title(const lensprof_profile_key &key) {
     return camera + (camera.empty() || lens.empty() ? "" : ", ") + lens;
 }
 
+std::string setting_title(const lensprof_profile_key &key) {
+    const KeyParts parts = key_parts(key);
+    std::string title = lens_title(key);
+    for (const size_t part : {2, 3, 4})
+        if (!parts[part].empty()) title += (title.empty() ? "" : ", ") + parts[part];
+    return title;
+}
+
 std::string missing_lens(const LensCards &cards, const MissingSetting &missing) {
     const auto is_other = [&](const MeasuredSetting &setting) {
         const lensprof_profile_key &key = setting.of.key;
@@ -189,8 +191,10 @@ std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &s
 
 std::string several_for_lensfun(const CardSettings &settings) {
     std::set<std::string> titles;
-    for (const CardSetting &setting : settings.list)
-        titles.insert(lens_title(setting.key) + temperature_text(setting.key, " at "));
+    for (const CardSetting &setting : settings.list) {
+        const std::string temperature = temperature_text(setting.key);
+        titles.insert(lens_title(setting.key) + (temperature.empty() ? "" : " at " + temperature));
+    }
     if (titles.size() < 2) return {};
     return "holds one lens on one camera, but the pictures are of " + joined({titles.begin(), titles.end()}, "; ")
            + ": give each its own run, or omit -o";
@@ -198,13 +202,7 @@ std::string several_for_lensfun(const CardSettings &settings) {
 
 std::string several_for_sensor(const CardSettings &settings) {
     std::set<std::string> titles;
-    for (const CardSetting &setting : settings.list) {
-        const KeyParts parts = key_parts(setting.key);
-        std::string title = lens_title(setting.key);
-        for (const size_t part : {2, 3, 4})
-            if (!parts[part].empty()) title += (title.empty() ? "" : ", ") + parts[part];
-        titles.insert(title);
-    }
+    for (const CardSetting &setting : settings.list) titles.insert(setting_title(setting.key));
     if (titles.size() < 2) return {};
     return "holds one sensor and lens at several colour temperatures, but the pictures are of "
            + joined({titles.begin(), titles.end()}, "; ") + ": give each its own run, or omit -o";

@@ -52,6 +52,9 @@ Corner corner_of(const CardFit &found);
 // "Canon EOS R5, RF 50mm F1.8", the parts that are known.
 std::string lens_title(const lensprof_profile_key &key);
 
+// "Canon EOS R5, RF 50mm F1.8, 50 mm, f/2", likewise.
+std::string setting_title(const lensprof_profile_key &key);
+
 // "24 pictures of 6 settings".
 std::string counted_settings(const CardSettings &settings);
 

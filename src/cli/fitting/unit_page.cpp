@@ -90,7 +90,7 @@ size_t counted_verdicts(const UnitCards &cards, UnitVerdict verdict) {
 std::string units_page(const UnitCards &cards, const std::string &command, const std::vector<std::string> &warnings) {
     const size_t pass = counted_verdicts(cards, UnitVerdict::pass), fail = counted_verdicts(cards, UnitVerdict::fail),
                  others = counted_verdicts(cards, UnitVerdict::not_measured)
-                          + counted_verdicts(cards, UnitVerdict::not_compared),
+                          + counted_verdicts(cards, UnitVerdict::not_compared) + cards.missing.size(),
                  all = pass + fail + others;
     Json page = new_page("units", batch_title(cards, cards.batches.front()),
                          "Units of one type, from pictures of a white card", command);
@@ -101,16 +101,18 @@ std::string units_page(const UnitCards &cards, const std::string &command, const
                        {"details", warnings},
                        {"notes", Json::array()}};
     const UnitLimits &limits = cards.options.limits;
-    page["facts"] =
-        Json::array({{"units", std::to_string(all)},
-                     {"pass", std::to_string(pass)},
-                     {"fail", std::to_string(fail)},
-                     {"not measured or compared", std::to_string(others)},
-                     {"limits", format("corner %g %%, centre %g %%, frame %g %%, colour %g %%", 100.0 * limits.corner,
-                                       100.0 * limits.center, 100.0 * limits.frame, 100.0 * limits.color)}});
+    page["facts"] = Json::array(
+        {{"units", std::to_string(all)},
+         {"pass", std::to_string(pass)},
+         {"fail", std::to_string(fail)},
+         {"not measured or compared", std::to_string(others)},
+         {"limits", format("corner %g %%, centre %g %%, frame %g %%, colour %g %%, unseen %g %%", 100.0 * limits.corner,
+                           100.0 * limits.center, 100.0 * limits.frame, 100.0 * limits.color, 100.0 * limits.unseen)}});
     page["batches"] = Json::array(), page["falloffs"] = Json::array(), page["responses"] = Json::array();
     for (const UnitBatch &batch : cards.batches) page["batches"].push_back(batch_json(cards, batch));
     page["left_out"] = Json::array();
+    for (const UnitWithoutPictures &unit : cards.missing)
+        page["left_out"].push_back({{"name", unit.unit}, {"reason", unit.reason}});
     for (const LeftOutCard &card : cards.left_out)
         page["left_out"].push_back({{"name", card.file}, {"reason", card.reason}});
     return page_of(page);

@@ -202,12 +202,9 @@ void declare_units(Command &command, UnitOptions &o) {
 
 std::string batch_title(const UnitCards &cards, const UnitBatch &batch) {
     const lensprof_profile_key &key = cards.setting_of(batch.units.front()).of.key;
-    std::string title = lens_title(key);
-    const KeyParts parts = key_parts(key);
-    for (const size_t part : {2, 3, 4})
-        if (!parts[part].empty()) title += (title.empty() ? "" : ", ") + parts[part];
-    if (key.color_temperature_k != LENSPROF_UNKNOWN)
-        title += (title.empty() ? "" : ", ") + format("%g K", key.color_temperature_k);
+    std::string title = setting_title(key);
+    if (const std::string temperature = temperature_text(key); !temperature.empty())
+        title += (title.empty() ? "" : ", ") + temperature;
     return title.empty() ? "camera not stated" : title;
 }
 

@@ -124,8 +124,7 @@ auto rank_of(const lensprof_profile_key &key) {
 
 // "24 mm, f/2.8, 2850 K".
 std::string label_of(const lensprof_profile_key &key, const std::string &first) {
-    const std::string temperature =
-        key.color_temperature_k == LENSPROF_UNKNOWN ? std::string() : format("%g K", key.color_temperature_k);
+    const std::string temperature = temperature_text(key);
     const bool is_stated =
         key.focal_mm != LENSPROF_UNKNOWN || key.aperture != LENSPROF_UNKNOWN || key.distance_m != LENSPROF_UNKNOWN;
     if (temperature.empty()) return describe_setting(key, first);
@@ -327,6 +326,10 @@ void leave_out_without_temperature(CardSettings &settings) {
 }
 
 }  // namespace
+
+std::string temperature_text(const lensprof_profile_key &key) {
+    return key.color_temperature_k == LENSPROF_UNKNOWN ? std::string() : format("%g K", key.color_temperature_k);
+}
 
 CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
                            Events &events) {

@@ -27,6 +27,9 @@ struct CardSettings {
     std::vector<UnitWithoutPictures> missing_units;
 };
 
+// "2850 K"; empty if it is unknown.
+std::string temperature_text(const lensprof_profile_key &key);
+
 // Where units are measured alone, each has settings of its own. Finds the settings of pictures and folders of them,
 // whatever their order: by EXIF, completed by names, replaced by `table` (NULL: none) and by what `o` states for all.
 // Left out, with the reason: files that cannot be read; of folders, copies of other pictures and those whose falloff

@@ -165,23 +165,22 @@ void note_doubles(UnitRule::By by, const std::vector<CardPicture> &pictures, Eve
     }
 }
 
-// The folders of units: the subfolders of the only folder, or the folders given.
-std::vector<fs::path> unit_folders(const std::vector<std::string> &names) {
-    std::vector<fs::path> given, folders;
-    for (const std::string &name : names)
-        if (is_folder(name)) given.push_back(fs::path(name).lexically_normal());
-    if (given.size() != 1) return given;
-    std::error_code ignored;  // a folder that cannot be listed was reported when its pictures were looked for
-    for (const fs::directory_entry &entry : fs::directory_iterator(given.front(), ignored)) {
-        const std::string name = entry.path().filename().string();
-        if (is_folder(entry.path().string()) && name.front() != '.') folders.push_back(entry.path());
-    }
-    std::sort(folders.begin(), folders.end());
-    return folders;
+std::string without_end(const fs::path &folder) {
+    const fs::path normal = folder.lexically_normal();
+    return (normal.has_filename() ? normal : normal.parent_path()).string();
 }
 
-fs::path unit_name_of(const fs::path &folder) {
-    return folder.has_filename() ? folder.filename() : folder.parent_path().filename();
+// The folders of units: the subfolders of the only folder, or the folders given.
+std::set<std::string> unit_folders(const std::vector<std::string> &names) {
+    std::set<std::string> given, folders;
+    for (const std::string &name : names)
+        if (is_folder(name)) given.insert(without_end(name));
+    if (given.size() != 1) return given;
+    std::error_code ignored;  // a folder that cannot be listed was reported when its pictures were looked for
+    for (const fs::directory_entry &entry : fs::directory_iterator(*given.begin(), ignored))
+        if (is_folder(entry.path().string()) && entry.path().filename().string().front() != '.')
+            folders.insert(without_end(entry.path()));
+    return folders;
 }
 
 }  // namespace
@@ -193,18 +192,18 @@ std::vector<UnitWithoutPictures> units_without_pictures(const UnitRule &rule, co
     if (rule.by != UnitRule::By::folder && rule.by != UnitRule::By::automatic) return missing;
     std::set<std::string> units;
     for (const CardPicture &picture : pictures) units.insert(picture.unit);
-    const std::vector<fs::path> folders = unit_folders(names);
-    const auto is_unit = [&](const fs::path &folder) { return units.count(unit_name_of(folder).string()) > 0; };
-    if (std::none_of(folders.begin(), folders.end(), is_unit)) return missing;  // serial numbers, or paths
-    for (const fs::path &folder : folders) {
+    const std::set<std::string> folders = unit_folders(names);
+    const auto is_unit = [&](const std::string &folder) { return units.count(folder_name(folder, folders)) > 0; };
+    if (std::none_of(folders.begin(), folders.end(), is_unit)) return missing;  // serial numbers
+    for (const std::string &folder : folders) {
         if (is_unit(folder)) continue;
         const auto is_below = [&](const LeftOutCard &card) {
-            const std::string below = card.file.substr(0, folder.string().size() + 1);
-            return below == folder.string() + "/" || card.file == folder.string();
+            const std::string path = fs::path(card.file).lexically_normal().string();
+            return path == folder || path.rfind(folder + "/", 0) == 0;
         };
         const auto first = std::find_if(left_out.begin(), left_out.end(), is_below);
-        missing.push_back({unit_name_of(folder).string(),
-                           first == left_out.end() ? folder.string() + ": no picture in it" : first->reason});
+        missing.push_back(
+            {folder_name(folder, folders), first == left_out.end() ? folder + ": no picture in it" : first->reason});
     }
     return missing;
 }

@@ -19,8 +19,7 @@ constexpr uint32_t blocks = 16;       // along each side
 constexpr double largest_dark = 0.1;  // of full scale: no pedestal is as high
 // Of the level over the frame: light that falls on it varies by more. Shares of the level, or of the scale near 0.
 constexpr double clear_spread = 0.01, largest_spread = 0.05, least_spread = 0.0001, least_light = 0.0005;
-constexpr double far_sigmas = 4.0, least_reach = 1.5 / 255.0;   // from the median of a block; more than a step of 8 bit
-constexpr double mad_to_sigma = 1.4826, median_error = 1.2533;  // of normal numbers; relative to that of a mean
+constexpr double far_sigmas = 4.0, least_reach = 1.5 / 255.0;  // from the median of a block; more than a step of 8 bit
 
 // Standard deviation, from the median distance of the median.
 double deviation(std::vector<double> values) {

@@ -11,6 +11,10 @@
 
 namespace lensprof {
 
+constexpr double mad_to_sigma =
+    1.4826;  // standard deviation of normal numbers, of the median deviation from the median
+constexpr double median_error = 1.2533;  // of the median of normal numbers, relative to that of their mean
+
 struct DarkLevel {
     std::vector<std::string> files;
     std::vector<std::string> names;  // of files and pages

@@ -5,11 +5,10 @@
 
 #include <lensprof/formats.h>
 
+#include "fit/base/quantile.hpp"
+
 namespace lensprof {
 namespace {
-
-constexpr double to_standard_deviation = 1.4826;  // of the median of deviations, for a normal distribution
-constexpr double error_of_median = 1.2533;        // sqrt(pi / 2): that of a mean is 1
 
 // Whether the profile has light there.
 bool is_lit(const lensprof_profile &profile, const Lattice &lattice, const std::array<double, 2> &place) {
@@ -18,13 +17,8 @@ bool is_lit(const lensprof_profile &profile, const Lattice &lattice, const std::
     return std::hypot(x, y) <= half_diagonal * reach_of_circle(profile.image_circle, std::atan2(y, x));
 }
 
-double median_of(std::vector<double> &values) {
-    const size_t half = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(half), values.end());
-    const double upper = values[half];
-    if (values.size() % 2) return upper;
-    return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(half)));
-}
+// The mean of both middle values of an even number.
+double median_of(std::vector<double> &values) { return 0.5 * (median(values) + upper_median(values)); }
 
 lensprof_status take_map(void *user, const lensprof_import_entry *entry) {
     return lensprof_profile_copy(static_cast<lensprof_profile *>(user), entry->profile);
@@ -143,8 +137,8 @@ Middle middle_of(std::vector<double> values) {
     if (values.empty() || 2 * values.size() < given) return {NAN, NAN, NAN};
     const double median = median_of(values);
     for (double &value : values) value = std::fabs(value - median);
-    const double scatter = to_standard_deviation * median_of(values);
-    return {median, scatter, error_of_median * scatter / std::sqrt(static_cast<double>(values.size()))};
+    const double scatter = mad_to_sigma * median_of(values);
+    return {median, scatter, median_error * scatter / std::sqrt(static_cast<double>(values.size()))};
 }
 
 // The median of the light at each place, as one falloff and its gain grid. Medians of k1..k3 would not do: the three
