@@ -11,6 +11,7 @@
 
 #include "apply.h"
 #include "base.h"
+#include "deflicker.h"
 #include "exposure_settings.h"
 #include "exposures.h"
 #include "fields.h"

@@ -10,6 +10,7 @@ void declare_apply(Command &program);
 void declare_bracket(Command &program);
 void declare_build(Command &program);
 void declare_calibrate(Command &program);
+void declare_deflicker(Command &program);
 void declare_doctor(Command &program);
 void declare_flat(Command &program);
 void declare_profile(Command &program);

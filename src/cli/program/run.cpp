@@ -51,6 +51,7 @@ void declare_all(Command root, const Program &program) {
     declare_flat(root);
     declare_apply(root);
     declare_align(root);
+    declare_deflicker(root);
     declare_query(root);
     declare_profile(root);
     declare_report(root);

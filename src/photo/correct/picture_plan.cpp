@@ -74,7 +74,7 @@ CorrectionMark mark_of(const Correction &job, const CorrectionKind &kind) {
     CorrectionMark mark;
     const bool crops_have = std::any_of(job.crops.begin(), job.crops.end(),
                                         [](const CropCorrection &crop) { return has_falloff(*crop.model); });
-    if ((has_falloff(*job.model) || crops_have) && kind.strength > 0.0)
+    if (!job.keeps_falloff && (has_falloff(*job.model) || crops_have) && kind.strength > 0.0)
         mark.falloff = kind.simulate ? Falloff::added : Falloff::removed;
     mark.linear = kind.linear;
     mark.software = std::string("lensprof ") + lensprof_version();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <lensprof/exposure_settings.h>
 
@@ -76,6 +77,27 @@ std::string read_captured(const Exif &exif) {
     return time.empty() || digits.find_first_of("123456789") == std::string::npos ? "" : time + "." + digits;
 }
 
+// Days from 1970-01-01 (proleptic Gregorian calendar).
+int64_t days_of(int64_t year, int64_t month, int64_t day) {
+    const int64_t y = month > 2 ? year : year - 1, era = (y >= 0 ? y : y - 399) / 400, of_era = y - era * 400;
+    const int64_t of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
+    return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
+}
+
+std::optional<double> read_taken(const Exif &exif) {
+    int year, month, day, hour, minute, second;
+    const std::string time = read_text(exif, exif_tags::captured);
+    if (std::sscanf(time.c_str(), "%4d:%2d:%2d %2d:%2d:%2d", &year, &month, &day, &hour, &minute, &second) != 6
+        || year < 1 || month < 1 || month > 12 || day < 1 || day > 31)
+        return std::nullopt;
+    double fraction = 0.0, unit = 0.1;
+    for (const char digit : read_text(exif, exif_tags::captured_fraction)) {
+        if (digit < '0' || digit > '9') break;
+        fraction += unit * (digit - '0'), unit /= 10.0;
+    }
+    return static_cast<double>(((days_of(year, month, day) * 24 + hour) * 60 + minute) * 60 + second) + fraction;
+}
+
 }  // namespace
 
 void read_exposure(const Exif &exif, std::optional<double> maker_iso, PictureMetadata &metadata) {
@@ -84,6 +106,7 @@ void read_exposure(const Exif &exif, std::optional<double> maker_iso, PictureMet
     metadata.exposure_time_s = read_exposure_time(exif);
     metadata.iso = read_iso(exif, maker_iso);
     metadata.captured = read_captured(exif);
+    metadata.taken_s = read_taken(exif);
     metadata.is_manual = read_is_manual(exif);
     if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
         metadata.exif_ev = lensprof_settings_ev(*metadata.exposure_time_s, *metadata.f_number, *metadata.iso);

@@ -70,6 +70,8 @@ struct PictureMetadata {
 
     std::string captured;  // EXIF's DateTimeOriginal with its fraction of a second; empty if either is missing
 
+    std::optional<double> taken_s;  // DateTimeOriginal, s since 1970 of a clock without time zone
+
     uint16_t orientation = 1;  // EXIF orientation, 1..8
 
     bool is_manual = false;  // time, aperture and ISO were set manually according to EXIF's ExposureProgram or

@@ -1,0 +1,208 @@
+#include "fit/deflicker/chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "fit/deflicker/shading.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kStride = 4;          // ratio of the distances of two levels of comparisons
+constexpr size_t kLevels = 12;           // the last distance is 4^11 frames
+constexpr size_t kMostWaiting = 3;       // frames that may disagree before those after them agree again
+constexpr double kFewestValid = 0.05;    // share of the cells that a frame with information has
+constexpr float kMemory = 0.9f;          // of the change of a cell, per frame
+constexpr float kQuiet = 0.01f;          // EV, change of a cell that is steady
+constexpr double kToneStep = 0.15;       // EV, smallest ratio that shows the response
+constexpr double kSmallestSigma = 1e-4;  // EV, of a ratio
+
+bool has_equal_cells(const FrameCells &a, const FrameCells &b) {
+    for (size_t c = 0; c < 3; c++) {
+        if (a.ev[c].size() != b.ev[c].size()) return false;
+        for (size_t n = 0; n < a.ev[c].size(); n++)
+            if (a.ev[c][n] != b.ev[c][n] && !(std::isnan(a.ev[c][n]) && std::isnan(b.ev[c][n]))) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+double ToneSums::error_rms() const {
+    double total = 0.0, mean = 0.0, square = 0.0;
+    for (size_t n = 0; n < kBins; n++) total += weight[n], mean += error[n];
+    if (!(total > 0.0)) return 0.0;
+    mean /= total;
+    double used = 0.0;
+    for (size_t n = 0; n < kBins; n++) {
+        if (weight[n] < 0.02 * total) continue;
+        const double off = error[n] / weight[n] - mean;
+        square += off * off, used += 1.0;
+    }
+    return used > 1.0 ? std::sqrt(square / used) : 0.0;
+}
+
+void FrameChain::note_steadiness(const FrameCells &cells, const FrameRatio &ratio) {
+    if (ratio.shift[0] != 0.0 || ratio.shift[1] != 0.0) {
+        change_.clear(), steadiness_.clear();
+        return;
+    }
+    const uint32_t main = main_channel(grid_);
+    const std::vector<float> &before = kept_[0].cells.ev[main], &after = cells.ev[main];
+    change_.resize(after.size(), 0.0f), steadiness_.resize(after.size(), 1.0f);
+    for (size_t n = 0; n < after.size(); n++) {
+        const float residual = after[n] - before[n] - static_cast<float>(ratio.ev[main]);
+        if (!std::isfinite(residual)) continue;
+        change_[n] = kMemory * change_[n] + (1.0f - kMemory) * std::min(residual * residual, 1.0f);
+        steadiness_[n] = kQuiet * kQuiet / (kQuiet * kQuiet + change_[n]);
+    }
+}
+
+void FrameChain::note_tones(const FrameCells &cells, const FrameRatio &ratio) {
+    const uint32_t main = main_channel(grid_);
+    const double step = ratio.ev[main];
+    if (std::abs(step) < kToneStep || ratio.shift[0] != 0.0 || ratio.shift[1] != 0.0) return;
+    const std::vector<float> &before = kept_[0].cells.ev[main], &after = cells.ev[main];
+    for (size_t n = 0; n < after.size(); n++) {
+        const double d = static_cast<double>(after[n] - before[n]);
+        if (!(std::abs(d - step) < kAgreement + 0.3 * std::abs(step))) continue;
+        const double tone = static_cast<double>(after[n] + before[n]) / 2.0;
+        const auto bin = static_cast<size_t>(
+            std::clamp(tone + static_cast<double>(ToneSums::kBins), 0.0, static_cast<double>(ToneSums::kBins) - 1.0));
+        tones_.weight[bin] += step * step, tones_.error[bin] += step * (d - step);
+    }
+}
+
+void FrameChain::start_segment(Kept first) {
+    if (segment_frames_ > 0) segment_++;
+    segment_frames_ = 0;
+    kept_.clear(), change_.clear(), steadiness_.clear();
+    frames_[first.frame].shift = {};
+    append(first.frame, std::move(first.cells));
+}
+
+void FrameChain::append(uint32_t frame, FrameCells cells) {
+    frames_[frame].state = LENSPROF_FRAME_LEVELLED;
+    frames_[frame].segment = segment_;
+    if (kept_.empty()) kept_.resize(kLevels);
+    uint32_t distance = kStride;
+    for (size_t level = 1; level < kLevels && segment_frames_ % distance == 0; level++, distance *= kStride) {
+        if (segment_frames_ > 0) link_over(kept_[level], frame, cells);
+        kept_[level] = {frame, cells};
+    }
+    kept_[0] = {frame, std::move(cells)};
+    segment_frames_++;
+}
+
+void FrameChain::link_over(const Kept &earlier, uint32_t frame, const FrameCells &cells) {
+    CellShift shift = frames_[frame].shift;
+    for (size_t a = 0; a < 2; a++) shift[a] -= frames_[earlier.frame].shift[a];
+    const FrameRatio ratio = compare_frames(grid_, earlier.cells, cells, steadiness_, shift);
+    if (ratio.is_valid()) links_.push_back({earlier.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+}
+
+void FrameChain::note_rows(const FrameCells &cells, const FrameRatio &ratio, ChainFrame &frame) {
+    const std::vector<float> &before = frames_[kept_[0].frame].rows;
+    frame.rows = row_ratios(grid_, kept_[0].cells, cells, ratio);
+    for (size_t j = 0; j < before.size(); j++) frame.rows[j] += before[j];
+}
+
+void FrameChain::note_falloff(const FrameCells &cells, const FrameRatio &ratio, const ChainFrame &frame) {
+    const double before = frames_[kept_[0].frame].f_number;
+    if (!std::isfinite(before) || !std::isfinite(frame.f_number) || before == frame.f_number) return;
+    falloff_steps_.push_back({before, frame.f_number, falloff_ratio(grid_, kept_[0].cells, cells, ratio)});
+}
+
+bool FrameChain::join(uint32_t frame, const FrameCells &cells) {
+    const Kept &last = kept_[0];
+    ChainFrame &f = frames_[frame];
+    const FrameRatio ratio = register_frames(grid_, last.cells, cells, steadiness_, {});
+    f.agreeing = ratio.agreeing, f.sigma = ratio.sigma;
+    f.motion = std::hypot(ratio.shift[0], ratio.shift[1]);
+    if (!ratio.is_valid()) return false;
+    f.repeats = last.frame + 1 == frame && has_equal_cells(last.cells, cells);
+    for (size_t a = 0; a < 2; a++) f.shift[a] = frames_[last.frame].shift[a] + ratio.shift[a];
+    links_.push_back({last.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+    note_tones(cells, ratio);
+    if (has_rows_) note_rows(cells, ratio, f);
+    note_falloff(cells, ratio, f);
+    note_steadiness(cells, ratio);
+    return true;
+}
+
+void FrameChain::add(FrameCells cells, const lensprof_deflicker_facts &facts) {
+    const auto frame = static_cast<uint32_t>(frames_.size());
+    ChainFrame next;
+    next.seconds = facts.seconds, next.settings_ev = facts.settings_ev, next.f_number = facts.f_number;
+    next.white_share = cells.white_share, next.dark_share = cells.dark_share;
+    next.segment = segment_;
+    const bool is_empty = cells.valid_share < kFewestValid;
+    next.state = !is_empty                ? LENSPROF_FRAME_DISAGREES
+                 : cells.dark_share > 0.5 ? LENSPROF_FRAME_DARK
+                                          : LENSPROF_FRAME_WHITE;
+    frames_.push_back(next);
+    if (is_empty) return;
+    if (kept_.empty()) return start_segment({frame, std::move(cells)});
+    if (join(frame, cells)) {
+        waiting_.clear();
+        return append(frame, std::move(cells));
+    }
+    // A cut, if this frame continues one that disagreed.
+    if (!waiting_.empty() && register_frames(grid_, waiting_.back().cells, cells, {}, {}).is_valid()) {
+        std::vector<Kept> later;
+        later.swap(waiting_);
+        start_segment(std::move(later.back()));
+        join(frame, cells);
+        return append(frame, std::move(cells));
+    }
+    waiting_.push_back({frame, std::move(cells)});
+    if (waiting_.size() <= kMostWaiting) return;
+    Kept first = std::move(waiting_.back());
+    waiting_.clear();
+    start_segment(std::move(first));
+}
+
+void FrameChain::solve() {
+    // Least squares of all ratios, robust to those that a change of the light over long distances distorts.
+    const auto count = static_cast<Eigen::Index>(frames_.size());
+    std::vector<double> weight(links_.size());
+    for (size_t n = 0; n < links_.size(); n++) weight[n] = 1.0 / (links_[n].sigma * links_[n].sigma);
+    std::vector<uint8_t> is_first(frames_.size(), 1);
+    for (const FrameLink &link : links_) is_first[link.to] = 0;
+    Eigen::MatrixXd ev = Eigen::MatrixXd::Zero(count, 3);
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    const uint32_t main = main_channel(grid_);
+    for (int round = 0; round < 4; round++) {
+        std::vector<Eigen::Triplet<double>> entries;
+        Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 3);
+        for (size_t n = 0; n < links_.size(); n++) {
+            const FrameLink &link = links_[n];
+            const double w = weight[n];
+            entries.emplace_back(link.to, link.to, w), entries.emplace_back(link.from, link.from, w);
+            entries.emplace_back(std::max(link.to, link.from), std::min(link.to, link.from), -w);
+            for (Eigen::Index c = 0; c < 3; c++) {
+                right(link.to, c) += w * link.ev[static_cast<size_t>(c)];
+                right(link.from, c) -= w * link.ev[static_cast<size_t>(c)];
+            }
+        }
+        for (Eigen::Index i = 0; i < count; i++)  // the first of a segment is 0 EV
+            entries.emplace_back(i, i, is_first[static_cast<size_t>(i)] ? 1e12 : 0.0);
+        Eigen::SparseMatrix<double> normal(count, count);
+        normal.setFromTriplets(entries.begin(), entries.end());
+        if (round == 0) solver.analyzePattern(normal);
+        solver.factorize(normal);
+        ev = solver.solve(right);
+        for (size_t n = 0; n < links_.size(); n++) {
+            const FrameLink &link = links_[n];
+            const double residual = std::abs(ev(link.to, main) - ev(link.from, main) - link.ev[main]) / link.sigma;
+            weight[n] = std::min(1.0, 2.0 / std::max(residual, 1e-9)) / (link.sigma * link.sigma);
+        }
+    }
+    for (Eigen::Index i = 0; i < count; i++)
+        for (Eigen::Index c = 0; c < 3; c++) frames_[static_cast<size_t>(i)].ev[static_cast<size_t>(c)] = ev(i, c);
+}
+
+}  // namespace lensprof

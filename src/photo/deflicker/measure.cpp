@@ -1,0 +1,307 @@
+#include "photo/deflicker/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "photo/base/databases.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/calibration/fit.hpp"
+#include "photo/calibration/known_exposures.hpp"
+#include "photo/calibration/stored_prior.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/scene/sampling.hpp"
+#include "photo/scene/static_camera.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kReadSide = 480;  // px, of the reduced frames: five pixels to a cell
+constexpr size_t kFirstFrames = 12;  // that show whether the camera moves
+constexpr double kToneError = 0.03;  // of a response that does not fit
+constexpr size_t kTestedSteps = 16;  // from one frame to the next that responses are tested with
+constexpr size_t kFittedFrames = 8;
+
+using Deflicker = std::unique_ptr<lensprof_deflicker, DeflickerDestroy>;
+
+struct Candidate {
+    std::vector<lensprof_response> response;  // 1 or 3
+    std::string name;
+};
+
+Deflicker new_deflicker(const MeasureOptions &o, const Candidate &candidate, const PictureSize &size) {
+    lensprof_deflicker_options options;
+    lensprof_deflicker_options_init(&options);
+    options.response = candidate.response.data();
+    options.responses = static_cast<uint32_t>(candidate.response.size());
+    options.rows = o.rows;
+    if (!o.region_px.empty()) {
+        const double w = size.width, h = size.height;
+        options.region[0] = o.region_px[0] / w, options.region[1] = o.region_px[1] / h;
+        options.region[2] = std::min((o.region_px[0] + o.region_px[2]) / w, 1.0);
+        options.region[3] = std::min((o.region_px[1] + o.region_px[3]) / h, 1.0);
+    }
+    lensprof_deflicker *made = nullptr;
+    lensprof_error error{};
+    check(lensprof_deflicker_create(&options, &made, &error), "deflicker", &error);
+    return Deflicker(made);
+}
+
+void add_frame(const Frame &frame, const Picture &picture, lensprof_deflicker &deflicker) {
+    lensprof_deflicker_facts facts;
+    lensprof_deflicker_facts_init(&facts);
+    facts.seconds = frame.seconds, facts.settings_ev = frame.settings_ev;
+    if (frame.metadata.f_number) facts.f_number = *frame.metadata.f_number;
+    const lensprof_image view = picture.view();
+    lensprof_error error{};
+    const lensprof_status status = lensprof_deflicker_add(&deflicker, &view, &facts, &error);
+    if (status != LENSPROF_OK) throw Failure(LENSPROF_ERROR_READ, frame.file + ": " + error.text);
+}
+
+lensprof_deflicker_result result_of(lensprof_deflicker &deflicker, const std::string &item) {
+    lensprof_deflicker_result result;
+    lensprof_deflicker_result_init(&result);
+    lensprof_error error{};
+    check(lensprof_deflicker_measure(&deflicker, &result, &error), item, &error);
+    return result;
+}
+
+[[noreturn]] void fail_moving(const Frame &first, const lensprof_deflicker_result &r) {
+    const std::string how =
+        r.motion > 0.0 && r.unlinked < 0.5
+            ? format("it turns or moves by %.1f %% of the frame from one frame to the next", 100.0 * r.motion)
+            : format("%.0f %% of the frames do not agree with the one before them", 100.0 * r.unlinked);
+    throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                  first.file + ": the camera is not stationary: " + how + advice("moving_camera"),
+                  LENSPROF_REASON_FEW_AGREE);
+}
+
+// Reads the frames in parallel, and adds them in order. Frames that fail get a reason.
+class Reading {
+public:
+    Reading(const MeasureOptions &o, const std::vector<const Frame *> &frames, Events &events)
+        : options_(o), frames_(frames), events_(events), pictures_(frames.size()), reasons_(frames.size()) {}
+
+    void run(lensprof_deflicker &deflicker, bool is_checked) {
+        const auto count = static_cast<uint32_t>(frames_.size());
+        size_t added = 0;
+        for_each_in_order(
+            count, thread_count(options_.threads), [&](uint32_t i) { read(i); },
+            [&](uint32_t i) {
+                if (reasons_[i].empty()) try {
+                        add_frame(*frames_[i], pictures_[i], deflicker);
+                        added++;
+                    } catch (const Failure &failure) {
+                        if (!is_of_input(failure)) throw;
+                        reasons_[i] = failure.what();
+                    }
+                pictures_[i] = Picture();
+                events_.update_items("measuring", i + 1, count);
+                if (is_checked && added == kFirstFrames && reasons_[i].empty()) check_still(deflicker);
+            });
+    }
+
+    const std::vector<std::string> &reasons() const { return reasons_; }
+
+private:
+    void read(uint32_t i) {
+        try {
+            pictures_[i] = read_picture(frames_[i]->file, {kReadSide});
+        } catch (const Failure &failure) {
+            if (!is_of_input(failure)) throw;
+            reasons_[i] = failure.what();
+        }
+    }
+
+    void check_still(lensprof_deflicker &deflicker) const {
+        lensprof_deflicker_result result;
+        lensprof_deflicker_result_init(&result);
+        if (lensprof_deflicker_measure(&deflicker, &result, nullptr) == LENSPROF_OK && result.moving
+            && result.levelled >= kFirstFrames / 2)
+            fail_moving(*frames_[0], result);
+    }
+
+    const MeasureOptions &options_;
+    const std::vector<const Frame *> &frames_;
+    Events &events_;
+    std::vector<Picture> pictures_;
+    std::vector<std::string> reasons_;
+};
+
+std::vector<const Frame *> pointers_to(const std::vector<Frame> &frames) {
+    std::vector<const Frame *> all;
+    for (const Frame &frame : frames) all.push_back(&frame);
+    return all;
+}
+
+bool is_linear(const Frame &frame) {
+    const uint32_t processing = frame.metadata.key.processing;
+    return processing == LENSPROF_PROCESSING_RAW;
+}
+
+// The response of a stored profile of the camera; none without one.
+std::optional<Candidate> stored_candidate(const MeasureOptions &o, const Frame &frame) {
+    const lensprof_profile_key &key = frame.metadata.key;
+    if (!*key.camera_model) return std::nullopt;
+    StoreOptions store;
+    store.dbs = databases_of(o.dbs);
+    if (existing(store.dbs).empty()) return std::nullopt;
+    store.dbs = existing(store.dbs), store.db = store.dbs[0], store.no_store = true;
+    const EarlierProfile found = find_stored_prior(store, 0, false, key, "");
+    if (!found.profile || found.profile->response[0].kind == LENSPROF_RESPONSE_LINEAR) return std::nullopt;
+    const lensprof_profile &profile = *found.profile;
+    return Candidate{{profile.response, profile.response + profile.responses},
+                     "response of profile " + std::to_string(found.id)};
+}
+
+// The steps between neighbouring frames that show the response best: the largest.
+std::vector<const Frame *> test_frames(const FrameSequence &sequence,
+                                       const std::vector<lensprof_deflicker_frame> &measured) {
+    std::vector<size_t> steps;
+    const auto change = [&](size_t i) { return std::abs(measured[i + 1].exposure.ev - measured[i].exposure.ev); };
+    for (size_t i = 0; i + 1 < measured.size(); i++)
+        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i + 1].state == LENSPROF_FRAME_LEVELLED
+            && measured[i].segment == measured[i + 1].segment)
+            steps.push_back(i);
+    std::stable_sort(steps.begin(), steps.end(), [&](size_t a, size_t b) { return change(a) > change(b); });
+    steps.resize(std::min(steps.size(), kTestedSteps));
+    std::sort(steps.begin(), steps.end());
+    std::vector<const Frame *> frames;
+    for (const size_t i : steps)
+        for (const size_t n : {i, i + 1})
+            if (frames.empty() || frames.back() != &sequence.frames[n]) frames.push_back(&sequence.frames[n]);
+    return frames;
+}
+
+double tone_error_of(const MeasureOptions &o, const Candidate &candidate, const std::vector<const Frame *> &frames,
+                     Events &events) {
+    std::vector<Frame> untimed;  // neighbours in the test need not be neighbours in time
+    for (const Frame *frame : frames) untimed.push_back({frame->file, frame->metadata});
+    const Deflicker deflicker = new_deflicker(o, candidate, frames[0]->metadata.size);
+    const std::vector<const Frame *> all = pointers_to(untimed);
+    Reading(o, all, events).run(*deflicker, false);
+    return result_of(*deflicker, frames[0]->file).tone_error;
+}
+
+// A response fitted to frames whose exposures are spread evenly.
+std::optional<Candidate> fitted_candidate(const FrameSequence &sequence,
+                                          const std::vector<lensprof_deflicker_frame> &measured, Events &events) {
+    std::vector<size_t> order;
+    for (size_t i = 0; i < measured.size(); i++)
+        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i].segment == 0) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return measured[a].exposure.ev < measured[b].exposure.ev; });
+    std::vector<std::string> files;
+    const size_t count = std::min(order.size(), kFittedFrames);
+    if (count < 2) return std::nullopt;
+    std::vector<PictureMetadata> metadata;
+    for (size_t n = 0; n < count; n++) {
+        const Frame &frame = sequence.frames[order[n * (order.size() - 1) / (count - 1)]];
+        files.push_back(frame.file), metadata.push_back(frame.metadata);
+    }
+    try {
+        Scene scene = static_scene(files, true);
+        scene.reference = 0;
+        FitInput input;
+        input.options = fit_options({});
+        input.options.free &= scene.images[0].free;
+        input.options.reference = scene.reference;
+        std::vector<SamplePicture> pictures = read_pictures(scene, SamplingOptions().max_side, events);
+        input.options.channels = channel_count(pictures);
+        lensprof_sample_options sampling;
+        lensprof_sample_options_init(&sampling);
+        input.pairs = sample_still(scene, pictures, sampling, 0.0, events);
+        input.options.refine = 1;
+        input.images = fit_images(scene);
+        add_known_exposures({}, scene, metadata, input.images, events);
+        const Fitted fitted = fit(input, scene.reference, files[0], events, nullptr);
+        if (!fitted.corrects()) return std::nullopt;
+        return Candidate{{fitted.result.response}, "response fitted to " + counted(count, "frame")};
+    } catch (const Failure &failure) {
+        if (!is_of_input(failure)) throw;
+        return std::nullopt;
+    }
+}
+
+std::vector<lensprof_deflicker_frame> frames_of(const lensprof_deflicker &deflicker, size_t count) {
+    std::vector<lensprof_deflicker_frame> frames(count);
+    for (uint32_t i = 0; i < count; i++) {
+        lensprof_deflicker_frame_init(&frames[i]);
+        check(lensprof_deflicker_frame_at(&deflicker, i, &frames[i], nullptr), "deflicker");
+    }
+    return frames;
+}
+
+// Measures all frames with one response, and leaves out those that cannot be read.
+void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_checked, FrameSequence &sequence,
+                  MeasuredSequence &measured, Events &events) {
+    measured.deflicker = new_deflicker(o, candidate, sequence.frames[0].metadata.size);
+    const std::vector<const Frame *> all = pointers_to(sequence.frames);
+    Reading reading(o, all, events);
+    reading.run(*measured.deflicker, is_checked);
+    events.clear();
+    std::vector<Frame> kept;
+    for (size_t i = 0; i < sequence.frames.size(); i++) {
+        if (reading.reasons()[i].empty())
+            kept.push_back(std::move(sequence.frames[i]));
+        else
+            sequence.left_out.push_back({sequence.frames[i].file, reading.reasons()[i]});
+    }
+    sequence.frames = std::move(kept);
+    if (sequence.frames.size() < 2)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      (sequence.left_out.empty() ? std::string() : sequence.left_out[0].reason + "; ")
+                          + "fewer than two frames can be read",
+                      LENSPROF_REASON_FEW_PAIRS);
+    measured.result = result_of(*measured.deflicker, sequence.frames[0].file);
+    measured.frames = frames_of(*measured.deflicker, sequence.frames.size());
+    measured.response = candidate.name;
+    auto model = std::shared_ptr<lensprof_profile>(new_profile());
+    model->responses = static_cast<uint32_t>(candidate.response.size());
+    std::copy(candidate.response.begin(), candidate.response.end(), model->response);
+    measured.model = model;
+}
+
+}  // namespace
+
+std::vector<lensprof_exposure> MeasuredSequence::curve(const lensprof_deflicker_target &target, double &window) const {
+    std::vector<lensprof_exposure> wanted(frames.size());
+    lensprof_error error{};
+    check(lensprof_deflicker_curve(deflicker.get(), &target, wanted.data(), static_cast<uint32_t>(wanted.size()),
+                                   &window, &error),
+          "deflicker", &error);
+    return wanted;
+}
+
+MeasuredSequence measure_frames(const MeasureOptions &o, FrameSequence &sequence, Events &events) {
+    const Frame &first = sequence.frames[0];
+    lensprof_response linear;
+    lensprof_response_set_linear(&linear);
+    std::vector<Candidate> candidates;
+    if (o.response) {
+        candidates.push_back({{*o.response}, "given response"});
+    } else if (is_linear(first)) {
+        candidates.push_back({{linear}, "linear"});
+    } else {
+        if (auto stored = stored_candidate(o, first)) candidates.push_back(std::move(*stored));
+        candidates.push_back({{o.srgb}, "sRGB"});
+    }
+    MeasuredSequence measured;
+    measure_with(o, candidates[0], true, sequence, measured, events);
+    if (measured.result.moving) fail_moving(sequence.frames[0], measured.result);
+    if (o.response || is_linear(sequence.frames[0]) || measured.result.tone_error <= kToneError) return measured;
+    // Ratios of dark and bright tones contradict the response: another one is chosen by the frames that show it best.
+    const std::vector<const Frame *> tested = test_frames(sequence, measured.frames);
+    if (auto fitted = fitted_candidate(sequence, measured.frames, events)) candidates.push_back(std::move(*fitted));
+    size_t best = 0;
+    double least = INFINITY;
+    for (size_t n = 0; n < candidates.size() && least > kToneError; n++) {
+        const double error = tone_error_of(o, candidates[n], tested, events);
+        if (error < least) best = n, least = error;
+    }
+    if (best > 0) measure_with(o, candidates[best], false, sequence, measured, events);
+    return measured;
+}
+
+}  // namespace lensprof
