@@ -193,7 +193,7 @@ void name_frames(const Levels &levels, const Is &is_one, const std::string &what
         names.push_back(std::filesystem::path(frame.file).filename().string());
     }
     if (numbers.empty()) return;
-    const std::string text = counted(numbers.size(), "frame") + " " + what + ": " + listed(numbers, names);
+    const std::string text = what + ": " + listed(numbers, names);
     warns ? warn(streams, text) : note(streams, text);
 }
 
@@ -212,21 +212,20 @@ void report_frames(const Levels &levels, Streams &streams) {
         return frame.measured.state == LENSPROF_FRAME_LEVELLED && &frame != &levels.frames.front()
                && frame.measured.segment > 0 && (&frame)[-1].measured.segment != frame.measured.segment;
     };
-    name_frames(levels, begins, "begin a new scene, which is levelled apart", false, streams);
-    name_frames(levels, has_state(LENSPROF_FRAME_DARK), "too dark to be measured and left as they are", true, streams);
-    name_frames(levels, has_state(LENSPROF_FRAME_WHITE), "too bright to be measured and left as they are", true,
+    name_frames(levels, begins, "a new scene begins and is levelled apart", false, streams);
+    name_frames(levels, has_state(LENSPROF_FRAME_DARK), "left unchanged, too dark to be measured", true, streams);
+    name_frames(levels, has_state(LENSPROF_FRAME_WHITE), "left unchanged, too bright to be measured", true, streams);
+    name_frames(levels, has_state(LENSPROF_FRAME_DISAGREES), "left unchanged, unlike the frames before and after", true,
                 streams);
-    name_frames(levels, has_state(LENSPROF_FRAME_DISAGREES),
-                "disagree with those before and after and are left as they are", true, streams);
     name_frames(
-        levels, [](const LevelledFrame &frame) { return frame.measured.repeats != 0; }, "repeat the frame before",
-        false, streams);
+        levels, [](const LevelledFrame &frame) { return frame.measured.repeats != 0; },
+        "the same picture as the frame before", false, streams);
     name_frames(
         levels, [&](const LevelledFrame &f) { return f.measured.white_share > clipped && f.change_ev() < darker_ev; },
-        "have clipped highlights, which become grey because they are darkened", true, streams);
+        "clipped highlights become grey, because the frame is darkened", true, streams);
     name_frames(
         levels, [&](const LevelledFrame &f) { return f.change_ev() > brighter_ev; },
-        "become more than 3 EV brighter, with the noise of their dark parts", true, streams);
+        "more than 3 EV brighter, with the noise of the dark parts", true, streams);
 }
 
 // What a stationary camera does not show.

@@ -46,6 +46,24 @@ struct CellSums {
     }
 };
 
+// Irradiance smoothed with the weights 1, 2, 1; NaN where a cell of the nine is missing.
+std::vector<float> soften(const FrameGrid &grid, const std::vector<float> &ev) {
+    const size_t columns = grid.columns, rows = grid.rows;
+    std::vector<float> light(ev.size()), across(ev.size(), NAN), soft(ev.size(), NAN);
+    for (size_t n = 0; n < ev.size(); n++) light[n] = std::exp2(ev[n]);
+    for (size_t j = 0; j < rows; j++)
+        for (size_t i = 1; i + 1 < columns; i++) {
+            const float *cell = &light[j * columns + i];
+            across[j * columns + i] = cell[-1] + 2 * cell[0] + cell[1];
+        }
+    for (size_t j = 1; j + 1 < rows; j++)
+        for (size_t i = 1; i + 1 < columns; i++) {
+            const size_t n = j * columns + i;
+            soft[n] = std::log2((across[n - columns] + 2 * across[n] + across[n + columns]) / 16);
+        }
+    return soft;
+}
+
 }  // namespace
 
 CellTables::CellTables(const std::vector<lensprof_response> &response, uint32_t sample)
@@ -136,6 +154,7 @@ FrameCells reduce_frame(const FrameGrid &grid, const CellTables &tables, const l
         take_cells(j);
         j = next;
     }
+    for (uint32_t c = 0; c < grid.channels; c++) cells.soft[c] = soften(grid, cells.ev[c]);
     const double all = static_cast<double>(grid.cells());
     cells.white_share = static_cast<double>(white) / (double(wide) * high);
     cells.dark_share = static_cast<double>(dark_cells) / all;

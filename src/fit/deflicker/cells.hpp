@@ -38,7 +38,8 @@ struct FrameGrid {
 };
 
 struct FrameCells {
-    std::array<std::vector<float>, 3> ev;  // log2 of the mean irradiance; NaN: saturated, or dark
+    std::array<std::vector<float>, 3> ev;    // log2 of the mean irradiance; NaN: saturated, or dark
+    std::array<std::vector<float>, 3> soft;  // of 3 x 3 cells, for comparison at fractions of a cell
     double white_share = 0, dark_share = 0, valid_share = 0;
 };
 

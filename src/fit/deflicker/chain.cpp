@@ -11,14 +11,16 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kStride = 4;          // ratio of the distances of two levels of comparisons
-constexpr size_t kLevels = 12;           // the last distance is 4^11 frames
-constexpr size_t kMostWaiting = 3;       // frames that may disagree before those after them agree again
-constexpr double kFewestValid = 0.05;    // share of the cells that a frame with information has
-constexpr float kMemory = 0.9f;          // of the change of a cell, per frame
-constexpr float kQuiet = 0.01f;          // EV, change of a cell that is steady
-constexpr double kToneStep = 0.15;       // EV, smallest ratio that shows the response
-constexpr double kSmallestSigma = 1e-4;  // EV, of a ratio
+constexpr uint32_t kStride = 4;           // ratio of the distances of two levels of comparisons
+constexpr size_t kLevels = 12;            // the last distance is 4^11 frames
+constexpr size_t kMostWaiting = 3;        // frames that may disagree before those after them agree again
+constexpr double kFewestValid = 0.05;     // share of the cells that a frame with information has
+constexpr size_t kSlowLevel = 3;          // 4^3 frames
+constexpr float kMemory = 0.9f;           // of the agreement of a cell, per ratio
+constexpr double kAgreeingSpreads = 2.5;  // of the cells, within which one agrees
+constexpr double kToneStep = 0.15;        // EV, smallest ratio that shows the response
+constexpr double kGross = 0.01;           // EV, contradiction of ratios that is gross
+constexpr double kSmallestSigma = 1e-4;   // EV, of a ratio
 
 bool has_equal_cells(const FrameCells &a, const FrameCells &b) {
     for (size_t c = 0; c < 3; c++) {
@@ -45,20 +47,34 @@ double ToneSums::error_rms() const {
     return used > 1.0 ? std::sqrt(square / used) : 0.0;
 }
 
-void FrameChain::note_steadiness(const FrameCells &cells, const FrameRatio &ratio) {
+void FrameChain::note_agreement(size_t level, const FrameCells &cells, const FrameRatio &ratio) {
     if (ratio.shift[0] != 0.0 || ratio.shift[1] != 0.0) {
-        change_.clear(), steadiness_.clear();
+        agreement_.assign(kLevels, {});
         return;
     }
     const uint32_t main = main_channel(grid_);
-    const std::vector<float> &before = kept_[0].cells.ev[main], &after = cells.ev[main];
-    change_.resize(after.size(), 0.0f), steadiness_.resize(after.size(), 1.0f);
+    const std::vector<float> &before = kept_[level].cells.ev[main], &after = cells.ev[main];
+    const auto limit = static_cast<float>(std::min(kAgreeingSpreads * ratio.spread, kAgreement));
+    Agreement &agreement = agreement_[level];
+    agreement.agreed.resize(after.size(), 0.0f);
+    agreement.ratios = kMemory * agreement.ratios + 1.0f;
     for (size_t n = 0; n < after.size(); n++) {
         const float residual = after[n] - before[n] - static_cast<float>(ratio.ev[main]);
-        if (!std::isfinite(residual)) continue;
-        change_[n] = kMemory * change_[n] + (1.0f - kMemory) * std::min(residual * residual, 1.0f);
-        steadiness_[n] = kQuiet * kQuiet / (kQuiet * kQuiet + change_[n]);
+        agreement.agreed[n] = kMemory * agreement.agreed[n] + (std::abs(residual) < limit ? 1.0f : 0.0f);
     }
+}
+
+// Weights of the cells: those that often change over this or a shorter distance count little. What changes within some
+// dozens of frames, such as slow clouds, biases the ratio of neighbours, too.
+const std::vector<float> &FrameChain::steadiness(size_t level) {
+    steadiness_.assign(grid_.cells(), 1.0f);
+    for (size_t k = 0; k <= std::max(level, kSlowLevel); k++) {
+        const Agreement &agreement = agreement_[k];
+        for (size_t n = 0; n < agreement.agreed.size(); n++)
+            steadiness_[n] = std::min(steadiness_[n], (agreement.agreed[n] + 1.0f) / (agreement.ratios + 2.0f));
+    }
+    for (float &share : steadiness_) share = share * share * share * share;
+    return steadiness_;
 }
 
 void FrameChain::note_tones(const FrameCells &cells, const FrameRatio &ratio) {
@@ -79,8 +95,9 @@ void FrameChain::note_tones(const FrameCells &cells, const FrameRatio &ratio) {
 void FrameChain::start_segment(Kept first) {
     if (segment_frames_ > 0) segment_++;
     segment_frames_ = 0;
-    kept_.clear(), change_.clear(), steadiness_.clear();
+    kept_.clear(), agreement_.assign(kLevels, {});
     frames_[first.frame].shift = {};
+    frames_[first.frame].rows.assign(has_rows_ ? grid_.rows : 0, 0.0f);
     append(first.frame, std::move(first.cells));
 }
 
@@ -90,24 +107,21 @@ void FrameChain::append(uint32_t frame, FrameCells cells) {
     if (kept_.empty()) kept_.resize(kLevels);
     uint32_t distance = kStride;
     for (size_t level = 1; level < kLevels && segment_frames_ % distance == 0; level++, distance *= kStride) {
-        if (segment_frames_ > 0) link_over(kept_[level], frame, cells);
+        if (segment_frames_ > 0) link_over(level, frame, cells);
         kept_[level] = {frame, cells};
     }
     kept_[0] = {frame, std::move(cells)};
     segment_frames_++;
 }
 
-void FrameChain::link_over(const Kept &earlier, uint32_t frame, const FrameCells &cells) {
+void FrameChain::link_over(size_t level, uint32_t frame, const FrameCells &cells) {
+    const Kept &earlier = kept_[level];
     CellShift shift = frames_[frame].shift;
     for (size_t a = 0; a < 2; a++) shift[a] -= frames_[earlier.frame].shift[a];
-    const FrameRatio ratio = compare_frames(grid_, earlier.cells, cells, steadiness_, shift);
-    if (ratio.is_valid()) links_.push_back({earlier.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
-}
-
-void FrameChain::note_rows(const FrameCells &cells, const FrameRatio &ratio, ChainFrame &frame) {
-    const std::vector<float> &before = frames_[kept_[0].frame].rows;
-    frame.rows = row_ratios(grid_, kept_[0].cells, cells, ratio);
-    for (size_t j = 0; j < before.size(); j++) frame.rows[j] += before[j];
+    const FrameRatio ratio = compare_frames(grid_, earlier.cells, cells, steadiness(level), shift);
+    if (!ratio.is_valid()) return;
+    links_.push_back({earlier.frame, frame, level, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+    note_agreement(level, cells, ratio);
 }
 
 void FrameChain::note_falloff(const FrameCells &cells, const FrameRatio &ratio, const ChainFrame &frame) {
@@ -119,17 +133,22 @@ void FrameChain::note_falloff(const FrameCells &cells, const FrameRatio &ratio, 
 bool FrameChain::join(uint32_t frame, const FrameCells &cells) {
     const Kept &last = kept_[0];
     ChainFrame &f = frames_[frame];
-    const FrameRatio ratio = register_frames(grid_, last.cells, cells, steadiness_, {});
+    FrameRatio ratio = register_frames(grid_, last.cells, cells, steadiness(0), {});
+    if (has_rows_) {  // the ratio of what is left without the flicker of lines
+        f.rows = row_ratios(grid_, last.cells, cells, ratio);
+        ratio = register_frames(grid_, last.cells, without_rows(grid_, cells, f.rows), steadiness(0), {});
+        const std::vector<float> &before = frames_[last.frame].rows;
+        for (size_t j = 0; j < before.size(); j++) f.rows[j] += before[j];
+    }
     f.agreeing = ratio.agreeing, f.sigma = ratio.sigma;
     f.motion = std::hypot(ratio.shift[0], ratio.shift[1]);
     if (!ratio.is_valid()) return false;
     f.repeats = last.frame + 1 == frame && has_equal_cells(last.cells, cells);
     for (size_t a = 0; a < 2; a++) f.shift[a] = frames_[last.frame].shift[a] + ratio.shift[a];
-    links_.push_back({last.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+    links_.push_back({last.frame, frame, 0, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
     note_tones(cells, ratio);
-    if (has_rows_) note_rows(cells, ratio, f);
     note_falloff(cells, ratio, f);
-    note_steadiness(cells, ratio);
+    note_agreement(0, cells, ratio);
     return true;
 }
 
@@ -166,10 +185,15 @@ void FrameChain::add(FrameCells cells, const lensprof_deflicker_facts &facts) {
 }
 
 void FrameChain::solve() {
-    // Least squares of all ratios, robust to those that a change of the light over long distances distorts.
+    // Least squares of all ratios. What biases a ratio of neighbours, such as slow clouds, biases the next ones alike:
+    // the error of a sum of four is four times theirs, not twice. A ratio over four times the distance therefore counts
+    // four times as much. Ratios that a change of the light distorts grossly count less.
     const auto count = static_cast<Eigen::Index>(frames_.size());
-    std::vector<double> weight(links_.size());
-    for (size_t n = 0; n < links_.size(); n++) weight[n] = 1.0 / (links_[n].sigma * links_[n].sigma);
+    const auto trust_of = [](const FrameLink &link) {
+        return std::exp2(2.0 * static_cast<double>(link.level)) / (link.sigma * link.sigma);
+    };
+    std::vector<double> weight;
+    for (const FrameLink &link : links_) weight.push_back(trust_of(link));
     std::vector<uint8_t> is_first(frames_.size(), 1);
     for (const FrameLink &link : links_) is_first[link.to] = 0;
     Eigen::MatrixXd ev = Eigen::MatrixXd::Zero(count, 3);
@@ -197,8 +221,9 @@ void FrameChain::solve() {
         ev = solver.solve(right);
         for (size_t n = 0; n < links_.size(); n++) {
             const FrameLink &link = links_[n];
-            const double residual = std::abs(ev(link.to, main) - ev(link.from, main) - link.ev[main]) / link.sigma;
-            weight[n] = std::min(1.0, 2.0 / std::max(residual, 1e-9)) / (link.sigma * link.sigma);
+            const double residual = std::abs(ev(link.to, main) - ev(link.from, main) - link.ev[main]);
+            const double limit = 2.0 * link.sigma + kGross;
+            weight[n] = std::min(1.0, limit / std::max(residual, limit)) * trust_of(link);
         }
     }
     for (Eigen::Index i = 0; i < count; i++)

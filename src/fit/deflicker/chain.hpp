@@ -14,6 +14,7 @@ namespace lensprof {
 // The ratio of frame `to` to an earlier one.
 struct FrameLink {
     uint32_t from, to;
+    size_t level;  // of the distance, 4^level frames
     std::array<double, 3> ev;
     double sigma;
 };
@@ -67,11 +68,11 @@ private:
     bool join(uint32_t frame, const FrameCells &cells);  // to the current segment
     void start_segment(Kept first);
     void append(uint32_t frame, FrameCells cells);
-    void link_over(const Kept &earlier, uint32_t frame, const FrameCells &cells);
-    void note_steadiness(const FrameCells &cells, const FrameRatio &ratio);
+    void link_over(size_t level, uint32_t frame, const FrameCells &cells);
+    void note_agreement(size_t level, const FrameCells &cells, const FrameRatio &ratio);
+    const std::vector<float> &steadiness(size_t level);
     void note_tones(const FrameCells &cells, const FrameRatio &ratio);
 
-    void note_rows(const FrameCells &cells, const FrameRatio &ratio, ChainFrame &frame);
     void note_falloff(const FrameCells &cells, const FrameRatio &ratio, const ChainFrame &frame);
 
     FrameGrid grid_;
@@ -80,7 +81,12 @@ private:
     std::vector<FrameLink> links_;
     std::vector<Kept> kept_;  // the last frame, then the last whose number in the segment is a multiple of 4, 16, ...
     std::vector<Kept> waiting_;  // frames that did not agree with the last one
-    std::vector<float> steadiness_, change_;
+    struct Agreement {
+        std::vector<float> agreed;  // decaying count per cell of the ratios that it agreed with
+        float ratios = 0.0f;        // of all ratios
+    };
+    std::vector<Agreement> agreement_;  // per level
+    std::vector<float> steadiness_;
     uint32_t segment_frames_ = 0, segment_ = 0;
     ToneSums tones_;
     std::vector<FalloffStep> falloff_steps_;

@@ -9,21 +9,37 @@
 namespace lensprof {
 namespace {
 
+constexpr double kToneTolerance = 0.12;  // share of the ratio by which tones may differ, if the response is wrong
+constexpr double kSameScene = 0.95;      // correlation of the cells of frames of one scene
 constexpr size_t kFewestCells = 24;
 constexpr double kSmallestAgreeing = 0.15, kSmallestCommon = 0.04;  // shares of a ratio that is trusted
-constexpr double kTukey = 4.7;           // standard deviations at which a cell has no influence
+constexpr double kTukey = 3.5;           // standard deviations at which a cell has no influence
+constexpr double kBiweight = 1.1853;     // standard deviation of a normal distribution over that of its weighted values
+constexpr double kThirdWidth = 0.4307;   // half width of a third of a normal distribution, standard deviations
 constexpr double kNarrowest = 0.002;     // EV, spread of the cells
 constexpr double kDim = 0.02;            // irradiance below which noise outweighs texture
 constexpr double kCellsPerError = 16.0;  // neighbouring cells err alike: this many count as one
 constexpr double kWorthwhile = 0.85;     // spread with a shift, relative to that without, that justifies it
 constexpr double kSmallestShift = 0.01;  // cells
 constexpr int kSearchSteps = 12;
-constexpr size_t kMostSorted = 2048;  // differences that determine the narrowest half
+constexpr size_t kMostSorted = 2048;  // differences that determine the narrowest third
 
 // The difference of every cell that both frames show.
 struct Differences {
     std::vector<float> ev[3];
     std::vector<float> weight;
+    double correlation = 0.0;  // of both frames' logarithms
+};
+
+// Correlation of pairs of numbers.
+struct Correlation {
+    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+
+    void add(double x, double y) { n += 1, a += x, b += y, aa += x * x, bb += y * y, ab += x * y; }
+    double value() const {
+        const double variance = (aa - a * a / n) * (bb - b * b / n);
+        return n > 2 && variance > 0.0 ? (ab - a * b / n) / std::sqrt(variance) : 0.0;
+    }
 };
 
 Differences differences_of(const FrameGrid &grid, const FrameCells &before, const FrameCells &after,
@@ -31,38 +47,42 @@ Differences differences_of(const FrameGrid &grid, const FrameCells &before, cons
     Differences d;
     const bool is_still = shift[0] == 0.0 && shift[1] == 0.0;
     const uint32_t main = main_channel(grid);
+    Correlation correlation;
     for (uint32_t j = 0; j < grid.rows; j++)
         for (uint32_t i = 0; i < grid.columns; i++) {
             const size_t n = size_t(j) * grid.columns + i;
             float ev[3];
             bool is_common = true;
             for (uint32_t c = 0; c < grid.channels && is_common; c++) {
-                const float earlier =
-                    is_still ? before.ev[c][n] : cell_at(grid, before.ev[c], i - shift[0], j - shift[1]);
-                ev[c] = after.ev[c][n] - earlier;
+                ev[c] = is_still ? after.ev[c][n] - before.ev[c][n]
+                                 : after.soft[c][n] - cell_at(grid, before.soft[c], i - shift[0], j - shift[1]);
                 is_common = std::isfinite(ev[c]);
             }
             if (!is_common) continue;
+            const auto later = static_cast<double>(after.ev[main][n]);
+            correlation.add(later - static_cast<double>(ev[main]), later);
             for (uint32_t c = 0; c < grid.channels; c++) d.ev[c].push_back(ev[c]);
             const double darker = std::exp2(static_cast<double>(after.ev[main][n]) - std::max(0.0f, ev[main]));
             const double steady = is_still && !steadiness.empty() ? static_cast<double>(steadiness[n]) : 1.0;
             d.weight.push_back(static_cast<float>(steady * darker / (darker + kDim)));
         }
+    d.correlation = correlation.value();
     return d;
 }
 
-// Middle and half width of the narrowest interval with half of the values (least median of squares).
-std::pair<double, double> narrowest_half(const std::vector<float> &values) {
+// Middle and standard deviation of the narrowest interval with a third of the values, as that of a normal
+// distribution: two thirds may be outliers.
+std::pair<double, double> narrowest_third(const std::vector<float> &values) {
     std::vector<float> sorted;
     const size_t step = values.size() / kMostSorted + 1;
     for (size_t n = 0; n < values.size(); n += step) sorted.push_back(values[n]);
     std::sort(sorted.begin(), sorted.end());
-    const size_t half = sorted.size() / 2;
+    const size_t third = sorted.size() / 3;
     size_t best = 0;
-    for (size_t n = 1; n + half < sorted.size(); n++)
-        if (sorted[n + half] - sorted[n] < sorted[best + half] - sorted[best]) best = n;
-    const double low = static_cast<double>(sorted[best]), high = static_cast<double>(sorted[best + half]);
-    return {(low + high) / 2.0, (high - low) / 2.0};
+    for (size_t n = 1; n + third < sorted.size(); n++)
+        if (sorted[n + third] - sorted[n] < sorted[best + third] - sorted[best]) best = n;
+    const double low = static_cast<double>(sorted[best]), high = static_cast<double>(sorted[best + third]);
+    return {(low + high) / 2.0, (high - low) / 2.0 / kThirdWidth};
 }
 
 struct Location {
@@ -70,12 +90,12 @@ struct Location {
     size_t inside;  // values with influence
 };
 
-// Mode of the values: from the middle of the narrowest half, by Tukey's biweight.
+// Mode of the values: from the narrowest third, by Tukey's biweight, whose scale follows what is inside.
 Location locate(const std::vector<float> &values, const std::vector<float> &weight) {
-    auto [middle, half_width] = narrowest_half(values);
-    double spread = std::max(half_width / 0.6745, kNarrowest);
+    auto [middle, spread] = narrowest_third(values);
+    spread = std::max(spread, kNarrowest);
     size_t inside = 0;
-    for (int round = 0; round < 8; round++) {
+    for (int round = 0; round < 12; round++) {
         const double limit = kTukey * spread;
         double sum = 0.0, weights = 0.0, squares = 0.0, plain = 0.0;
         inside = 0;
@@ -90,7 +110,7 @@ Location locate(const std::vector<float> &values, const std::vector<float> &weig
         if (!(weights > 0.0)) break;
         const double step = sum / weights;
         middle += step;
-        spread = std::max(std::min(spread, 1.15 * std::sqrt(squares / plain)), kNarrowest);
+        spread = std::max(kBiweight * std::sqrt(squares / plain), kNarrowest);
         if (std::abs(step) < 1e-6 && round > 2) break;
     }
     return {middle, spread, inside};
@@ -106,7 +126,9 @@ FrameRatio ratio_of(const FrameGrid &grid, const Differences &d, const CellShift
     const Location level = locate(d.ev[main], d.weight);
     ratio.ev.fill(level.middle);
     ratio.spread = level.spread;
-    const double limit = std::max(kAgreement, 2.5 * kNarrowest);
+    // With a wrong response, dark and bright cells of one scene have different ratios.
+    const double tolerance = d.correlation > kSameScene ? kToneTolerance : 0.0;
+    const double limit = kAgreement + tolerance * std::abs(level.middle);
     size_t agreeing = 0;
     std::vector<float> weight = d.weight;
     for (size_t n = 0; n < count; n++) {
@@ -127,7 +149,7 @@ FrameRatio ratio_of(const FrameGrid &grid, const Differences &d, const CellShift
 
 // One step of Gauss and Newton towards the shift that makes the cells agree: residual = gain - gradient . shift.
 bool improve_shift(const FrameGrid &grid, const FrameCells &before, const FrameCells &after, CellShift &shift) {
-    const std::vector<float> &a = before.ev[main_channel(grid)], &b = after.ev[main_channel(grid)];
+    const std::vector<float> &a = before.soft[main_channel(grid)], &b = after.soft[main_channel(grid)];
     double h[3][3] = {}, g[3] = {};
     std::vector<float> residuals;
     std::vector<std::array<double, 3>> terms;
@@ -142,8 +164,8 @@ bool improve_shift(const FrameGrid &grid, const FrameCells &before, const FrameC
             terms.push_back({-static_cast<double>(dx), -static_cast<double>(dy), 1.0});
         }
     if (residuals.size() < kFewestCells) return false;
-    const auto [middle, half_width] = narrowest_half(residuals);
-    const double limit = kTukey * std::max(half_width / 0.6745, 5.0 * kNarrowest);
+    const auto [middle, spread] = narrowest_third(residuals);
+    const double limit = kTukey * std::max(spread, 5.0 * kNarrowest);
     for (size_t n = 0; n < residuals.size(); n++) {
         const double residual = static_cast<double>(residuals[n]) - middle, share = residual / limit;
         if (std::abs(share) >= 1.0) continue;

@@ -14,11 +14,11 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFewestInRow = 8;      // cells
-constexpr double kRowWindow = 15.0;     // frames before and after one over which flicker of lines averages out
-constexpr double kLargestRatio = 0.35;  // EV, of a cell beyond the ratio of the frames, by falloff or lines
-constexpr double kWeakFalloff = 0.01;   // EV in the corner that is not corrected
-constexpr double kOutlier = 4.0;        // median residuals
+constexpr size_t kFewestInRow = 8;     // cells
+constexpr double kRowWindow = 30.0;    // frames before and after one over which flicker of lines averages out
+constexpr double kLargestRatio = 0.8;  // EV, of a cell beyond the ratio of the frames, by falloff or lines
+constexpr double kWeakFalloff = 0.01;  // EV in the corner that is not corrected
+constexpr double kOutlier = 4.0;       // median residuals
 
 // Calls use(column, row, EV beyond the ratio) for every cell that both frames show.
 template <class Use>
@@ -53,6 +53,15 @@ std::vector<float> row_ratios(const FrameGrid &grid, const FrameCells &before, c
     for (size_t j = 0; j < rows.size(); j++)
         if (values[j].size() >= kFewestInRow) rows[j] = median(values[j]);
     return rows;
+}
+
+FrameCells without_rows(const FrameGrid &grid, FrameCells cells, const std::vector<float> &rows) {
+    for (uint32_t c = 0; c < grid.channels; c++)
+        for (size_t n = 0; n < grid.cells(); n++) {
+            cells.ev[c][n] -= rows[n / grid.columns];
+            cells.soft[c][n] -= rows[n / grid.columns];
+        }
+    return cells;
 }
 
 std::array<double, 2> falloff_ratio(const FrameGrid &grid, const FrameCells &before, const FrameCells &after,

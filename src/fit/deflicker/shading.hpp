@@ -14,6 +14,9 @@ class FrameChain;
 std::vector<float> row_ratios(const FrameGrid &grid, const FrameCells &before, const FrameCells &after,
                               const FrameRatio &ratio);
 
+// The frame without these factors of its rows.
+FrameCells without_rows(const FrameGrid &grid, FrameCells cells, const std::vector<float> &rows);
+
 // q1, q2 of the factor exp2(q1 r^2 + q2 r^4) between the frames, r in half diagonals of the frame.
 std::array<double, 2> falloff_ratio(const FrameGrid &grid, const FrameCells &before, const FrameCells &after,
                                     const FrameRatio &ratio);

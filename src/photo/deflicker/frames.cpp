@@ -21,8 +21,9 @@ constexpr double kExposureStep = 0.1;  // EV, smallest difference of settings th
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::vector<std::string> frame_files(const std::vector<std::string> &names, const std::string &output, Events &events) {
-    std::vector<std::string> kinds, files;
+std::vector<NamedPicture> frame_files(const std::vector<std::string> &names, const std::string &output,
+                                      Events &events) {
+    std::vector<std::string> kinds;
     std::vector<NamedPicture> pictures = named_pictures(names, output, kinds);
     extract_outputs(pictures, events);
     for (const std::string &kind : kinds) events.note("", kind);
@@ -33,13 +34,12 @@ std::vector<std::string> frame_files(const std::vector<std::string> &names, cons
         if (!picture.instead_of.empty()) note_instead(picture, events);
         if (!seen.insert(file_identity(picture.file)).second)
             throw Failure(LENSPROF_ERROR_ARGUMENT, picture.file + ": given twice; give it once");
-        files.push_back(picture.file);
     }
     if (folders.size() > 1)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       *folders.begin() + " and " + *folders.rbegin()
                           + ": both have frames; give one folder, or its files, for one sequence");
-    return files;
+    return pictures;
 }
 
 std::string size_text(const Frame &frame) {
@@ -74,16 +74,17 @@ void leave_out_odd(FrameSequence &sequence) {
     sequence.frames = std::move(kept);
 }
 
-void read_all(const std::vector<std::string> &files, Events &events, FrameSequence &sequence) {
+// Files that are named must be readable; of a folder, those that are not are left out.
+void read_all(const std::vector<NamedPicture> &files, Events &events, FrameSequence &sequence) {
     std::vector<Frame> frames(files.size());
     std::vector<std::string> reasons(files.size());
     for_each_parallel(static_cast<uint32_t>(files.size()), "reading metadata", events, [&](uint32_t i) {
-        frames[i].file = files[i];
+        frames[i].file = files[i].file;
         try {
-            frames[i].metadata = read_metadata(files[i]);
-            if (frames[i].metadata.size.width == 0) frames[i].metadata.size = read_size(files[i]);
+            frames[i].metadata = read_metadata(files[i].file);
+            if (frames[i].metadata.size.width == 0) frames[i].metadata.size = read_size(files[i].file);
         } catch (const Failure &failure) {
-            if (!is_of_input(failure)) throw;
+            if (!files[i].in_folder || !is_of_input(failure)) throw;
             reasons[i] = failure.what();
         }
     });
@@ -91,7 +92,7 @@ void read_all(const std::vector<std::string> &files, Events &events, FrameSequen
         if (reasons[i].empty())
             sequence.frames.push_back(std::move(frames[i]));
         else
-            sequence.left_out.push_back({files[i], reasons[i]});
+            sequence.left_out.push_back({files[i].file, reasons[i]});
     }
 }
 
@@ -149,14 +150,17 @@ bool comes_before(const std::string &a, const std::string &b) {
 
 FrameSequence list_frames(const std::vector<std::string> &names, const std::string &output, Events &events) {
     FrameSequence sequence;
-    const std::vector<std::string> files = frame_files(names, output, events);
+    const std::vector<NamedPicture> pictures = frame_files(names, output, events);
+    std::vector<std::string> files;
+    for (const NamedPicture &picture : pictures) files.push_back(picture.file);
     require_one_kind(files);
-    read_all(files, events, sequence);
+    read_all(pictures, events, sequence);
     leave_out_odd(sequence);
     if (sequence.frames.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      (sequence.left_out.empty() ? files[0] : sequence.left_out[0].reason)
-                          + ": a single frame has no flicker; give at least two frames of a sequence",
+                      sequence.left_out.empty()
+                          ? files[0] + ": a single frame has no flicker; give at least two frames of a sequence"
+                          : sequence.left_out[0].reason + "; a single frame that is left has no flicker",
                       LENSPROF_REASON_FEW_PAIRS);
     order(sequence);
     set_known_exposures(sequence.frames);
