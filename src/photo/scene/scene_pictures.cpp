@@ -55,7 +55,7 @@ uint64_t bytes_in_memory(const Scene &scene, const Picture &header) {
     return header.height * (has_levels(scene.levels) ? row_samples * sizeof(float) : header.row_bytes);
 }
 
-void check_pictures(const Scene &scene, uint32_t max_side) {
+void check_pictures(const Scene &scene, uint32_t max_side, uint32_t in_memory) {
     ReadOptions options;
     options.max_side = max_side;
     uint64_t needed = 0;
@@ -63,6 +63,7 @@ void check_pictures(const Scene &scene, uint32_t max_side) {
         stop_if_cancelled();
         const Picture header = read_header(scene.files[i], options);
         check_size(scene, i, header);
+        if (i >= in_memory) continue;
         needed += bytes_in_memory(scene, header);
         if (scene.document) needed += uint64_t(header.width) * header.height;  // its mask
     }

@@ -23,9 +23,9 @@ constexpr uint64_t scene_max_bytes = uint64_t(8) << 30;
 uint64_t bytes_in_memory(const Scene &scene, const Picture &header);
 
 // Checks the headers before the first picture is loaded. Failure (unreadable) if a picture is missing, unreadable or of
-// another size than the scene states, or if all pictures, reduced to `max_side`, need more memory than
-// scene_max_bytes or than the machine has.
-void check_pictures(const Scene &scene, uint32_t max_side);
+// another size than the scene states, or if all pictures, or as many as are `in_memory` together, reduced to
+// `max_side`, need more memory than scene_max_bytes or than the machine has.
+void check_pictures(const Scene &scene, uint32_t max_side, uint32_t in_memory = UINT32_MAX);
 
 // Reads a picture, reduced to a longer side of at least `max_side` pixels, with the scene's levels removed. Failure
 // with the file name for a size that contradicts the scene, an unreadable file, float samples that are not finite, and

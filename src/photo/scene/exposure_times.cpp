@@ -1,0 +1,156 @@
+#include "photo/scene/exposure_times.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/named_pictures.hpp"
+
+namespace lensprof {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *times_name = "times.txt", *images_name = "images";
+
+// The name without folder and extension, by which lines and pictures are matched.
+std::string base_name(const std::string &file) { return fs::path(file).stem().string(); }
+
+struct Line {
+    std::string name;
+    double time_stamp = NAN, exposure = NAN;
+};
+
+class TimesReader {
+public:
+    TimesReader(const std::string &path, const std::vector<std::string> &files, bool is_whole)
+        : path_(path), files_(files), is_whole_(is_whole), ev_(files.size(), NAN), line_of_(files.size(), 0) {
+        for (size_t i = 0; i < files.size(); i++) {
+            const auto [other, is_new] = picture_of_.emplace(base_name(files[i]), i);
+            if (!is_new)
+                throw Failure(LENSPROF_ERROR_ARGUMENT,
+                              files[i] + ": has the name of " + files[other->second] + " in " + path + "; rename one");
+        }
+    }
+
+    std::vector<double> read() {
+        std::istringstream text(read_text(path_, max_text_bytes));
+        for (std::string line; std::getline(text, line);) {
+            number_++;
+            std::istringstream words(line.substr(0, line.find('#')));
+            std::vector<std::string> fields;
+            for (std::string word; words >> word;) fields.push_back(word);
+            if (!fields.empty()) add(line_of(fields));
+        }
+        if (previous_ == 0) throw Failure(LENSPROF_ERROR_READ, path_ + ": states no picture; give an intact file");
+        check_pictures_have_lines();
+        return ev_;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string &what) const {
+        throw Failure(LENSPROF_ERROR_READ, path_ + ": line " + std::to_string(number_) + ": " + what);
+    }
+
+    double number(const std::string &field, const char *what) const {
+        double value = NAN;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
+            fail(std::string("the ") + what + " is " + field + ", not a finite number; correct it");
+        return value;
+    }
+
+    Line line_of(const std::vector<std::string> &fields) const {
+        if (fields.size() < 2 || fields.size() > 3)
+            fail("has " + counted(fields.size(), "word")
+                 + "; give name, time stamp and exposure time, the last if it is known");
+        Line line{fields[0], number(fields[1], "time stamp"), NAN};
+        if (fields.size() == 3) line.exposure = number(fields[2], "exposure time");
+        if (line.exposure <= 0.0)
+            fail("the exposure time is " + fields[2] + ", but must be above 0; correct it, or omit it if unknown");
+        return line;
+    }
+
+    void add(const Line &line) {
+        if (previous_ && !(line.time_stamp > time_stamp_))
+            fail(format("the time stamp %.17g is not after %.17g of line %zu; correct it, or sort the lines by time",
+                        line.time_stamp, time_stamp_, previous_));
+        previous_ = number_, time_stamp_ = line.time_stamp;
+        auto found = picture_of_.find(line.name);
+        if (found == picture_of_.end()) found = picture_of_.find(base_name(line.name));
+        if (found == picture_of_.end()) {
+            if (is_whole_) fail("there is no picture " + line.name + "; remove the line, or add the picture");
+            return;
+        }
+        size_t &of_picture = line_of_[found->second];
+        if (of_picture)
+            fail(line.name + " is already in line " + std::to_string(of_picture) + "; remove one of the lines");
+        of_picture = number_;
+        ev_[found->second] = std::log2(line.exposure);
+    }
+
+    void check_pictures_have_lines() const {
+        const auto missing = static_cast<size_t>(std::count(line_of_.begin(), line_of_.end(), 0u));
+        if (!missing) return;
+        const auto first = std::find(line_of_.begin(), line_of_.end(), 0u) - line_of_.begin();
+        throw Failure(LENSPROF_ERROR_READ,
+                      path_ + ": has " + std::to_string(number_) + " lines, but none for "
+                          + files_[static_cast<size_t>(first)]
+                          + (missing > 1 ? " and " + counted(missing - 1, "other picture") : std::string())
+                          + "; add a line with name and time stamp, without exposure if unknown, or move the picture");
+    }
+
+    const std::string &path_;
+    const std::vector<std::string> &files_;
+    bool is_whole_;
+    std::map<std::string, size_t> picture_of_;
+    std::vector<double> ev_;
+    std::vector<size_t> line_of_;  // per picture, 0: none yet
+    size_t number_ = 0, previous_ = 0;
+    double time_stamp_ = 0.0;
+};
+
+// Only ratios count, but a file in seconds may be a surprise in other programs.
+void note_unit(const std::string &path, std::vector<double> ev, Events &events) {
+    constexpr double shortest_ms = 1e-3, longest_ms = 1e4;  // usual medians
+    ev.erase(std::remove_if(ev.begin(), ev.end(), [](double e) { return std::isnan(e); }), ev.end());
+    if (ev.empty()) return;
+    std::nth_element(ev.begin(), ev.begin() + static_cast<std::ptrdiff_t>(ev.size() / 2), ev.end());
+    const double median = std::exp2(ev[ev.size() / 2]);
+    if (median < shortest_ms || median > longest_ms)
+        events.note(path, format("its middle exposure is %.3g, which is unusual for milliseconds; only the ratios of "
+                                 "exposures are used here, but other programs may need another unit",
+                                 median));
+}
+
+}  // namespace
+
+ExposureSweep find_sweep(const std::string &folder, Events &events) {
+    const std::string images = (fs::path(folder) / images_name).string();
+    const std::string of_pictures = is_folder(images) ? images : folder;
+    ExposureSweep sweep;
+    std::vector<std::string> left_out;
+    for (const NamedPicture &picture : named_pictures({of_pictures}, "", left_out)) sweep.files.push_back(picture.file);
+    for (const std::string &text : left_out) events.warn({}, text);
+    for (const std::string &place : {folder, of_pictures}) {
+        const std::string times = (fs::path(place) / times_name).string();
+        if (sweep.times.empty() && path_exists(times)) sweep.times = times;
+    }
+    return sweep;
+}
+
+std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
+                                        Events &events) {
+    std::vector<double> ev = TimesReader(path, files, is_whole).read();
+    note_unit(path, ev, events);
+    return ev;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,29 @@
+// Exposures of pictures in the text file times.txt of the TUM mono dataset (Engel et al. 2016), which cameras of visual
+// odometry record: one line per picture with its name, a time stamp and the exposure time; # starts a comment.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "photo/base/events.hpp"
+
+namespace lensprof {
+
+// Pictures of a folder with their exposure times.
+struct ExposureSweep {
+    std::vector<std::string> files;
+    std::string times;  // path of times.txt; empty: missing
+};
+
+// The pictures of `folder/images` or, without it, of `folder`, in alphabetical order; times.txt is in `folder` or next
+// to the pictures. Failure (usage) for a folder without pictures.
+ExposureSweep find_sweep(const std::string &folder, Events &events);
+
+// The exposures of `files`, EV, NaN where the file states none. The exposure times may have any unit, because only
+// their ratios count. Names are those of the files, with or without folder and extension. `is_whole`: the files are all
+// pictures that there are, so that a line without a picture is an error. Failure (unreadable) with the line for wrong
+// names, time stamps that do not increase, and exposures that are not positive numbers.
+std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
+                                        Events &events);
+
+}  // namespace lensprof
