@@ -19,12 +19,13 @@ import report
 import scale
 import speed
 import static
+import sweep
 import tools
 import trials
 import verdicts
 
-PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "scale", "speed",
-         "radiance", "knowledge", "photographs", "reconstruction", "real")
+PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "sweep", "scale",
+         "speed", "radiance", "knowledge", "photographs", "reconstruction", "real")
 
 
 def parse():
@@ -62,7 +63,7 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
+               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "scale": [], "speed": {},
                "verdicts": {}, "cards": {}, "forms": {}, "trials": {}, "radiance": {}, "knowledge": [],
                "photographs": [], "moving": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
@@ -76,6 +77,8 @@ def main():
         results["scale"] = scale.run_all(options.quick, say)
     if "static" in options.only:
         results["static"] = static.run_all(options.quick, say)
+    if "sweep" in options.only:
+        results["sweep"] = sweep.run_all(options.quick, options.tune, options.match, say)
     for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),
                      ("refusals", cases.refusal_cases)):
         if part in options.only:

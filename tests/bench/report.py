@@ -235,6 +235,24 @@ def static(records):
     return lines + [""]
 
 
+def sweep(records):
+    if not records:
+        return []
+    lines = ["## Exposure sweeps", "", "Static scenes of 240 x 180 with times.txt, gamma 2, grey, 8 bit, 120 frames in steps"
+             " of 6 %, unless the case states otherwise. RMS and largest error of pcalib.txt, levels; the worse of the"
+             " seeds. responseCalib (Engel et al. 2016): as published; accepted: how many of its results increase strictly,"
+             " as DSO requires.", ""]
+    lines += header("case", "frames", "runs", "usable", "lensprof, RMS", "largest", "CPU, s", "peak, MB", "responseCalib, RMS",
+                    "largest", "CPU, s", "accepted")
+    for case in dict.fromkeys(r["case"] for r in records):
+        of = [r for r in records if r["case"] == case]
+        worst = [number(max((r[key] for r in of if key in r), default=None)) for key in
+                 ("rms", "largest", "cpu_s", "peak_mb", "engel_rms", "engel_largest", "engel_cpu_s")]
+        accepted = sum(r["engel_accepted"] for r in of) if "engel_accepted" in of[0] else "–"
+        lines.append(row(case, of[0]["frames"], len(of), sum(r["code"] == 0 for r in of), *worst, accepted))
+    return lines + [""]
+
+
 def speed(results):
     if not results:
         return []
@@ -453,7 +471,7 @@ def document(results):
                       " noise of 2 levels, unless the case states otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + verdicts(results["verdicts"])
     lines += flat(results["flat"]) + cards(results["cards"]) + forms(results["forms"]) + trials(results["trials"])
-    lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
+    lines += static(results["static"]) + sweep(results["sweep"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
     lines += photographs(results["photographs"]) + moving(results["moving"])
     lines += tables(results["reconstruction"])

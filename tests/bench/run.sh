@@ -5,8 +5,8 @@
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
 #                      [--sequences N] [--tune]
 #                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, cards, forms (shading
-#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, scale, speed,
-#                      radiance, knowledge, photographs (also of --real DIR), reconstruction (with colmap; also
+#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, sweep, scale,
+#                      speed, radiance, knowledge, photographs (also of --real DIR), reconstruction (with colmap; also
 #                      DIR/reconstruction), real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
 #   tests/bench/run.sh --only reconstruction --match terrain,drone   only these sets: terrain, room, drone, and with
 #                      --real DIR the folders of DIR/reconstruction; existing database.db and sparse are used
