@@ -55,6 +55,9 @@ LENSPROF_API void lensprof_response_set_linear(lensprof_response *response);
 /* f(x) = x^(1/gamma), gamma in [0.1, 10]. Error: RESPONSE for other values. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma);
 
+/* The transfer function of sRGB (IEC 61966-2-1), as a table: of pictures rendered for screens. */
+LENSPROF_API void lensprof_response_set_srgb(lensprof_response *response);
+
 /* f = f0 + sum coefficients[l] h_l for `modes` (0..25) coefficients of the EMoR model (linear domain).
  * Error: RESPONSE if the curve decreases anywhere on its grid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_emor(lensprof_response *response,

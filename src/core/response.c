@@ -37,6 +37,16 @@ lensprof_status lensprof_response_set_gamma(lensprof_response *response, double 
     return LENSPROF_OK;
 }
 
+void lensprof_response_set_srgb(lensprof_response *response) {
+    if (!response) return;
+    lensprof_response_set_linear(response);
+    response->kind = LENSPROF_RESPONSE_TABLE;
+    for (uint32_t j = 1; j < LAST; j++) {
+        const double x = (double)j / LAST;
+        response->table[j] = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
+    }
+}
+
 void lp_emor_curve(const double *coefficients, uint32_t modes, double *table) {
     memcpy(table, lp_emor_table[0], sizeof lp_emor_table[0]);
     for (uint32_t l = 0; l < modes; l++)

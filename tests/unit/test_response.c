@@ -13,6 +13,20 @@ static lensprof_response emor(double a, double b) {
 }
 
 /* The published tables: curves end at 0 and 1, modes vanish at the ends and are orthonormal on the grid. */
+static void test_srgb(void **state) {
+    (void)state;
+    lensprof_response r;
+    lensprof_response_set_srgb(NULL);
+    lensprof_response_set_srgb(&r);
+    assert_ok(lensprof_response_validate(&r));
+    assert_int_equal(r.kind, LENSPROF_RESPONSE_TABLE);
+    /* Known values: the middle grey of 18 %, the end of the linear part, and white. */
+    assert_close(lensprof_response_eval(&r, 0.18, NULL), 0.46135612950044164, 2e-5);
+    assert_close(lensprof_response_invert(&r, 0.5, NULL), 0.21404114048223255, 2e-6);
+    assert_close(lensprof_response_eval(&r, 0.002, NULL), 0.02584, 1e-6);
+    assert_close(lensprof_response_eval(&r, 1.0, NULL), 1.0, 0.0);
+}
+
 static void test_emor_tables(void **state) {
     (void)state;
     assert_null(lensprof_emor_table(LENSPROF_EMOR_MODES + 1));
@@ -146,6 +160,7 @@ static void test_validate(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_srgb),
         cmocka_unit_test(test_emor_tables),
         cmocka_unit_test(test_kinds_follow_their_formulas),
         cmocka_unit_test(test_values_outside_are_clamped),

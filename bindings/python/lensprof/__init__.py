@@ -6,13 +6,13 @@ stride) raise TypeError or ValueError. Files of other programs are in lensprof.f
 """
 from . import formats
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FIELDS_IMAGES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE,
-                   MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction,
+                   MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, DeflickerState, DeflickerTo, Direction,
                    DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Flip, Free, GammaFrom,
                    ItemKind, Layout, LinkState, Loss, Method, Pack, Packing, Processing, ProfilePrior, Projection, Reason,
                    ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
                    TrialCorners, TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
-from ._arrays import (EXPOSURE_DTYPE, EXPOSURE_SETTINGS_DTYPE, FIELDS_IMAGE_DTYPE, FIELDS_SMOOTHNESS_DTYPE,
+from ._arrays import (DEFLICKER_FRAME_DTYPE, EXPOSURE_DTYPE, EXPOSURE_SETTINGS_DTYPE, FIELDS_IMAGE_DTYPE, FIELDS_SMOOTHNESS_DTYPE,
                       FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, KNOWN_EXPOSURE_DTYPE, LINK_DTYPE, MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE,
                       SCENE_LINK_DTYPE)
 from ._events import Notice, Progress
@@ -20,6 +20,7 @@ from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .calibration import EXPOSURES_DTYPE, CalibrateOptions, Calibration
 from .copies import CorrectOptions, correct_file, correct_files
+from .deflicker import Deflickered, DeflickerResult, deflicker
 from .exposure import known_exposures, settings_ev
 from .fields import FieldsChannel, FieldsOptions, FieldsResult, fit_fields
 from .fit import FitCamera, FitImage, FitOptions, FitResult, fit_overlap, fit_radiance
@@ -40,7 +41,8 @@ from .trial import TrialCandidate, TrialResult, try_profiles
 
 __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "CalibrateOptions", "Calibration", "Camera",
-    "CameraKind", "CameraModel", "CopyExposure", "CorrectOptions", "Direction", "DistanceRule", "EMOR_MODES",
+    "CameraKind", "CameraModel", "CopyExposure", "CorrectOptions", "DEFLICKER_FRAME_DTYPE", "DeflickerResult", "DeflickerState", "DeflickerTo",
+    "Deflickered", "Direction", "DistanceRule", "EMOR_MODES",
     "EXPOSURES_DTYPE", "EXPOSURE_DTYPE", "EXPOSURE_SETTINGS_DTYPE", "Encoding", "Error", "Exposure", "ExposureState",
     "FIELDS_IMAGES", "FIELDS_IMAGE_DTYPE", "FIELDS_SMOOTHNESS_DTYPE",
     "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FieldsChannel", "FieldsOptions",
@@ -54,7 +56,7 @@ __all__ = [
     "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",
     "SceneImage", "SensorFlat", "SensorLevels", "SensorPlan", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames", "StoreRow", "StoreStats",
     "StoreSummary", "TrialCandidate", "TrialCorners", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
-    "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_fields", "fit_flat",
+    "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "deflicker", "emor_table", "encode_picture", "fit_fields", "fit_flat",
     "fit_overlap", "fit_radiance", "fit_rendering", "formats", "half_diagonal", "known_exposures", "layout_channels",
     "layout_samples", "lookup_in", "mired_share", "pack_rows", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
     "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "unpack_rows", "version",

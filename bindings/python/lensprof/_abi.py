@@ -26,6 +26,7 @@ EMOR_MODES = 25
 GRID_SIDE = 32
 UNKNOWN = -1.0
 COVARIANCE_MAX = 36
+DEFLICKER_FRAMES = 4194304
 FIELDS_IMAGES = 16384
 SETTINGS_MAX = 64
 CAMERAS_MAX = 64
@@ -165,6 +166,23 @@ class Saturated(IntEnum):
     """lensprof_saturated; see lensprof/apply.h."""
     NEUTRAL = 0
     AS_VALUE = 1
+
+
+class DeflickerState(IntEnum):
+    """lensprof_deflicker_state; see lensprof/deflicker.h."""
+    LEVELLED = 0
+    DARK = 1
+    WHITE = 2
+    DISAGREES = 3
+
+
+class DeflickerTo(IntEnum):
+    """lensprof_deflicker_to; see lensprof/deflicker.h."""
+    SMOOTH = 0
+    LIGHT = 1
+    MEAN = 2
+    FRAME = 3
+    CURVE = 4
 
 
 class ExposureState(IntEnum):
@@ -704,6 +722,75 @@ class ApplyOptions(Structure):
 
 class Plan(Structure):
     """Opaque."""
+
+
+class Deflicker(Structure):
+    """Opaque."""
+
+
+class DeflickerOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("responses", c_uint32),
+        ("response", POINTER(Response)),
+        ("rows", c_uint32),
+        ("reserved", c_uint32),
+        ("region", c_double * 4),
+    ]
+
+
+class DeflickerFacts(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("seconds", c_double),
+        ("settings_ev", c_double),
+        ("f_number", c_double),
+    ]
+
+
+class DeflickerFrame(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("state", c_uint32),
+        ("segment", c_uint32),
+        ("repeats", c_uint32),
+        ("seconds", c_double),
+        ("settings_ev", c_double),
+        ("exposure", Exposure),
+        ("ev_sigma", c_double),
+        ("agreeing", c_double),
+        ("shift", c_double * 2),
+        ("white_share", c_double),
+        ("dark_share", c_double),
+    ]
+
+
+class DeflickerResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("frames", c_uint32),
+        ("levelled", c_uint32),
+        ("segments", c_uint32),
+        ("repeated", c_uint32),
+        ("moving", c_uint32),
+        ("motion", c_double),
+        ("unlinked", c_double),
+        ("flicker", c_double),
+        ("tone_error", c_double),
+        ("known_range", c_double),
+    ]
+
+
+class DeflickerTarget(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("to", c_uint32),
+        ("frame", c_uint32),
+        ("reserved", c_uint32),
+        ("window_s", c_double),
+        ("curve", POINTER(c_double)),
+    ]
 
 
 class ExposureSettings(Structure):
@@ -1802,6 +1889,8 @@ ENUMS = {
     "LENSPROF_DIRECTION_": Direction,
     "LENSPROF_ENCODING_": Encoding,
     "LENSPROF_SATURATED_": Saturated,
+    "LENSPROF_FRAME_": DeflickerState,
+    "LENSPROF_TO_": DeflickerTo,
     "LENSPROF_EXPOSURE_": ExposureState,
     "LENSPROF_REASON_": Reason,
     "LENSPROF_SEVERITY_": Severity,
@@ -1849,6 +1938,11 @@ STRUCTS = {
     "lensprof_image": Image,
     "lensprof_target": Target,
     "lensprof_apply_options": ApplyOptions,
+    "lensprof_deflicker_options": DeflickerOptions,
+    "lensprof_deflicker_facts": DeflickerFacts,
+    "lensprof_deflicker_frame": DeflickerFrame,
+    "lensprof_deflicker_result": DeflickerResult,
+    "lensprof_deflicker_target": DeflickerTarget,
     "lensprof_exposure_settings": ExposureSettings,
     "lensprof_known_exposure": KnownExposure,
     "lensprof_exposures_info": ExposuresInfo,
@@ -1918,6 +2012,7 @@ STRUCTS = {
 
 OPAQUE = {
     "lensprof_plan": Plan,
+    "lensprof_deflicker": Deflicker,
     "lensprof_exposures": Exposures,
     "lensprof_fields": Fields,
     "lensprof_fit": Fit,
@@ -1950,6 +2045,11 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     CameraModel: ("lensprof_camera_model_init", []),
     Profile: ("lensprof_profile_init_sized", [Profile]),
     ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
+    DeflickerOptions: ("lensprof_deflicker_options_init_sized", [DeflickerOptions]),
+    DeflickerFacts: ("lensprof_deflicker_facts_init_sized", [DeflickerFacts]),
+    DeflickerFrame: ("lensprof_init_sized", [DeflickerFrame]),
+    DeflickerResult: ("lensprof_init_sized", [DeflickerResult]),
+    DeflickerTarget: ("lensprof_deflicker_target_init_sized", [DeflickerTarget]),
     ExposuresInfo: ("lensprof_init_sized", [ExposuresInfo]),
     ExposuresCamera: ("lensprof_exposures_camera_init_sized", [ExposuresCamera]),
     ExposuresLens: ("lensprof_exposures_lens_init_sized", [ExposuresLens]),
@@ -2002,6 +2102,7 @@ FUNCTIONS = {
     # model.h
     "lensprof_response_set_linear": (None, [POINTER(Response)]),
     "lensprof_response_set_gamma": (c_int, [POINTER(Response), c_double]),
+    "lensprof_response_set_srgb": (None, [POINTER(Response)]),
     "lensprof_response_set_emor": (c_int, [POINTER(Response), POINTER(c_double), c_uint32]),
     "lensprof_response_set_table": (c_int, [POINTER(Response), POINTER(c_double), c_uint32]),
     "lensprof_response_validate": (c_int, [POINTER(Response)]),
@@ -2060,6 +2161,19 @@ FUNCTIONS = {
                                    POINTER(ErrorText)]),
     "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
     "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
+    # deflicker.h
+    "lensprof_deflicker_options_init_sized": (None, [POINTER(DeflickerOptions), c_size_t]),
+    "lensprof_deflicker_facts_init_sized": (None, [POINTER(DeflickerFacts), c_size_t]),
+    "lensprof_deflicker_target_init_sized": (None, [POINTER(DeflickerTarget), c_size_t]),
+    "lensprof_deflicker_create": (c_int, [POINTER(DeflickerOptions), POINTER(POINTER(Deflicker)), POINTER(ErrorText)]),
+    "lensprof_deflicker_destroy": (None, [POINTER(Deflicker)]),
+    "lensprof_deflicker_add": (c_int, [POINTER(Deflicker), POINTER(Image), POINTER(DeflickerFacts),
+                                       POINTER(ErrorText)]),
+    "lensprof_deflicker_measure": (c_int, [POINTER(Deflicker), POINTER(DeflickerResult), POINTER(ErrorText)]),
+    "lensprof_deflicker_frame_at": (c_int, [POINTER(Deflicker), c_uint32, POINTER(DeflickerFrame), POINTER(ErrorText)]),
+    "lensprof_deflicker_curve": (c_int, [POINTER(Deflicker), POINTER(DeflickerTarget), POINTER(Exposure), c_uint32,
+                                         POINTER(c_double), POINTER(ErrorText)]),
+    "lensprof_deflicker_shading": (c_int, [POINTER(Deflicker), c_uint32, POINTER(GainGrid), POINTER(ErrorText)]),
     # exposure_settings.h
     "lensprof_settings_ev": (c_double, [c_double, c_double, c_double]),
     "lensprof_known_exposures": (c_int, [POINTER(ExposureSettings), c_uint32, POINTER(KnownExposure),

@@ -62,6 +62,10 @@ FIELDS_IMAGE_DTYPE = _dtype(_abi.FieldsImage)
 FIELDS_SMOOTHNESS_DTYPE = _dtype(_abi.FieldsSmoothness)
 """Layout of a smoothness that was tried: order, weight, rms (share of the light)."""
 
+DEFLICKER_FRAME_DTYPE = _dtype(_abi.DeflickerFrame)
+"""Layout of a frame in time: state (DeflickerState), segment, repeats, seconds, settings_ev, exposure, ev_sigma, agreeing,
+shift[2], white_share, dark_share."""
+
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
                  np.dtype(np.float32): SampleType.F32, np.dtype(np.float16): SampleType.F16}
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}

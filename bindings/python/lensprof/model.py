@@ -90,6 +90,13 @@ class Response(Value, _abi.Response):
         return response
 
     @classmethod
+    def srgb(cls) -> Response:
+        """The transfer function of sRGB, of pictures rendered for screens."""
+        response = cls()
+        lib.lensprof_response_set_srgb(byref(response))
+        return response
+
+    @classmethod
     def from_emor(cls, coefficients: Iterable[float]) -> Response:
         """Mean curve of the empirical model of response plus 0..25 of its modes times coefficients."""
         response, numbers = cls(), _doubles(coefficients)

@@ -335,7 +335,6 @@ int run(const DeflickerOptions &o, Streams &streams) {
     Levels levels;
     levels.sequence = list_frames(o.files, o.folder(), progress);
     MeasureOptions measure = o.measure;
-    measure.srgb = response_of_word("srgb");
     measure.threads = o.kind.threads;
     std::vector<std::string> inputs;
     for (const Frame &frame : levels.sequence.frames) inputs.push_back(frame.file);

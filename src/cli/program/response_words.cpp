@@ -8,8 +8,6 @@
 
 namespace lensprof {
 
-static double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
-
 // A film-like S: toe and shoulder (Naka-Rushton), with f(0) = 0 and f(1) = 1.
 static double film(double x) {
     const double p = 0.95, s = std::pow(0.28, p), at_one = 1.0 / (1.0 + s),
@@ -23,10 +21,11 @@ lensprof_response response_of_word(const std::string &word) {
     lensprof_status status = LENSPROF_OK;
     if (word == "linear") {
         lensprof_response_set_linear(&response);
-    } else if (word == "srgb" || word == "film") {
+    } else if (word == "srgb") {
+        lensprof_response_set_srgb(&response);
+    } else if (word == "film") {
         std::vector<double> table;
-        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
-            table.push_back(word == "srgb" ? srgb(j / 1023.0) : film(j / 1023.0));
+        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) table.push_back(film(j / 1023.0));
         status = lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size()));
     } else if (parts.size() == 2 && parts[0] == "gamma") {
         status = lensprof_response_set_gamma(&response, number_of(parts[1], any_number));

@@ -13,10 +13,6 @@ constexpr double kLargestWhite = 0.02;  // of the pixels of a cell: more would b
 constexpr double kDark8 = 6.0 / 255.0;  // mean sample of 8 bit
 constexpr double kDark = 1.0 / 1024.0;  // mean sample of more bits
 
-double srgb_inverse(double v) {  // IEC 61966-2-1
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
 float value_of(uint32_t sample, const uint8_t *row, size_t n) {
     if (sample == LENSPROF_SAMPLE_U8) return static_cast<float>(row[n]) / 255.0f;
     if (sample == LENSPROF_SAMPLE_U16) {
@@ -69,12 +65,12 @@ std::vector<float> soften(const FrameGrid &grid, const std::vector<float> &ev) {
 CellTables::CellTables(const std::vector<lensprof_response> &response, uint32_t sample)
     : sample_(sample), response_(response) {
     if (sample == LENSPROF_SAMPLE_F32) return;
+    if (response_.empty()) lensprof_response_set_srgb(&response_.emplace_back());
     const size_t codes = sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
-    for (size_t c = 0; c < std::max<size_t>(response.size(), 1); c++)
+    for (size_t c = 0; c < response_.size(); c++)
         for (size_t code = 0; code < codes; code++) {
             const double value = static_cast<double>(code) / static_cast<double>(codes - 1);
-            table_[c].push_back(static_cast<float>(
-                response.empty() ? srgb_inverse(value) : lensprof_response_invert(&response[c], value, nullptr)));
+            table_[c].push_back(static_cast<float>(lensprof_response_invert(&response_[c], value, nullptr)));
         }
 }
 

@@ -276,8 +276,8 @@ std::vector<lensprof_exposure> MeasuredSequence::curve(const lensprof_deflicker_
 
 MeasuredSequence measure_frames(const MeasureOptions &o, FrameSequence &sequence, Events &events) {
     const Frame &first = sequence.frames[0];
-    lensprof_response linear;
-    lensprof_response_set_linear(&linear);
+    lensprof_response linear, srgb;
+    lensprof_response_set_linear(&linear), lensprof_response_set_srgb(&srgb);
     std::vector<Candidate> candidates;
     if (o.response) {
         candidates.push_back({{*o.response}, "given response"});
@@ -285,7 +285,7 @@ MeasuredSequence measure_frames(const MeasureOptions &o, FrameSequence &sequence
         candidates.push_back({{linear}, "linear"});
     } else {
         if (auto stored = stored_candidate(o, first)) candidates.push_back(std::move(*stored));
-        candidates.push_back({{o.srgb}, "sRGB"});
+        candidates.push_back({{srgb}, "sRGB"});
     }
     MeasuredSequence measured;
     measure_with(o, candidates[0], true, sequence, measured, events);

@@ -19,7 +19,6 @@ struct DeflickerDestroy {
 
 struct MeasureOptions {
     std::optional<lensprof_response> response;  // of the frames; else chosen
-    lensprof_response srgb{};                   // of frames that were rendered for a screen
     std::vector<std::string> dbs;               // databases with responses of cameras
     std::vector<uint32_t> region_px;            // left, top, width, height of what is compared; empty: all
     bool rows = false;                          // flicker of lines, too
