@@ -8,6 +8,7 @@
 #include "photo/registration/candidates.hpp"
 #include "photo/registration/copies.hpp"
 #include "photo/registration/matching.hpp"
+#include "photo/registration/nearest_features.hpp"
 extern "C" {
 #include "support.h"
 }
@@ -132,6 +133,26 @@ void test_a_camera_that_moved_over_a_plane(void **) {
     assert_true(sum / double(found.link_residuals.size()) < 0.001);
 }
 
+// Every processor finds the same, for any number of rows and with equal ones.
+void test_nearest_features(void **) {
+    std::mt19937 random(11);
+    for (const auto &[count_a, count_b] : {std::pair(1, 1), {3, 2}, {4, 16}, {9, 17}, {30, 203}}) {
+        std::vector<int16_t> a, b;
+        for (int i = 0; i < count_a * descriptor_length; i++) a.push_back(static_cast<int16_t>(random() % 2800));
+        for (int i = 0; i < count_b * descriptor_length; i++) b.push_back(static_cast<int16_t>(random() % 2800));
+        if (count_b > 9) std::copy_n(b.begin() + 8 * descriptor_length, descriptor_length, b.begin());
+        const auto fast = nearest_features(a.data(), count_a, b.data(), count_b);
+        const auto plain = nearest_features_plainly(a.data(), count_a, b.data(), count_b);
+        assert_int_equal(fast.size(), count_a);
+        for (size_t i = 0; i < fast.size(); i++) {
+            assert_int_equal(fast[i].number, plain[i].number);
+            assert_int_equal(fast[i].best, plain[i].best);
+            if (count_b > 1) assert_int_equal(fast[i].next, plain[i].next);
+            assert_true(plain[i].best > 0 && plain[i].number >= 0 && plain[i].number < count_b);
+        }
+    }
+}
+
 // Similar pictures are candidates, and the number of candidates does not grow with the square.
 void test_candidates(void **) {
     std::mt19937 random(3);
@@ -150,7 +171,7 @@ void test_candidates(void **) {
                     float &value = picture.descriptors.at<float>(y, x);
                     value = std::max(0.0f, value + 0.3f * normal(random));
                 }
-            take_roots(picture.descriptors);
+            picture.descriptors = take_roots(picture.descriptors);
             pictures.push_back(picture);
         }
     }
@@ -285,6 +306,7 @@ int main() {
         cmocka_unit_test(test_a_camera_that_turned),
         cmocka_unit_test(test_metadata_are_a_first_guess),
         cmocka_unit_test(test_a_camera_that_moved_over_a_plane),
+        cmocka_unit_test(test_nearest_features),
         cmocka_unit_test(test_candidates),
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_turned_copies),

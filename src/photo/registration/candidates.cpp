@@ -4,10 +4,20 @@
 #include <numeric>
 #include <set>
 
+#include <Eigen/Core>
+
 #include "threads/item_loop.hpp"
 
 namespace lensprof {
 namespace {
+
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Descriptors = Eigen::Map<const Eigen::Matrix<int16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+Rows descriptors_of(const Features &picture, int first, int count) {
+    return Descriptors(picture.descriptors.ptr<int16_t>(first), count, descriptor_length).cast<float>()
+           / static_cast<float>(unit_length);
+}
 
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
 constexpr uint32_t next_to = 2;          // pictures before and after
@@ -18,7 +28,7 @@ constexpr size_t sample_size = 20000;  // descriptors that the visual words are 
 constexpr int rounds = 10;             // of k-means
 
 // The nearest word per row.
-std::vector<Eigen::Index> nearest_words(const Rows &centres, const Descriptors &rows) {
+std::vector<Eigen::Index> nearest_words(const Rows &centres, const Rows &rows) {
     const Eigen::VectorXf half = 0.5f * centres.rowwise().squaredNorm();
     const Rows scores = (rows * centres.transpose()).rowwise() - half.transpose();
     std::vector<Eigen::Index> nearest(static_cast<size_t>(rows.rows()));
@@ -34,7 +44,7 @@ Rows chosen_descriptors(const std::vector<Features> &pictures) {
     Rows chosen(static_cast<Eigen::Index>((total + step - 1) / step), descriptor_length);
     for (const Features &p : pictures)
         for (int i = 0; i < p.descriptors.rows; i++, number++)
-            if (number % step == 0) chosen.row(static_cast<Eigen::Index>(number / step)) = descriptors_of(p).row(i);
+            if (number % step == 0) chosen.row(static_cast<Eigen::Index>(number / step)) = descriptors_of(p, i, 1);
     return chosen;
 }
 
@@ -45,8 +55,7 @@ Rows find_words(const std::vector<Features> &pictures) {
     if (sample.rows() < words) return Rows();
     for (int w = 0; w < words; w++) centres.row(w) = sample.row(w * sample.rows() / words);
     for (int round = 0; round < rounds; round++) {
-        const std::vector<Eigen::Index> nearest =
-            nearest_words(centres, Descriptors(sample.data(), sample.rows(), descriptor_length));
+        const std::vector<Eigen::Index> nearest = nearest_words(centres, sample);
         Rows sum = Rows::Zero(words, descriptor_length);
         Eigen::VectorXf count = Eigen::VectorXf::Zero(words);
         for (Eigen::Index i = 0; i < sample.rows(); i++) {
@@ -63,7 +72,7 @@ Rows find_words(const std::vector<Features> &pictures) {
 Eigen::VectorXf aggregate(const Rows &centres, const Features &picture) {
     Rows sum = Rows::Zero(words, descriptor_length);
     if (picture.descriptors.rows > 0) {
-        const Descriptors rows = descriptors_of(picture);
+        const Rows rows = descriptors_of(picture, 0, picture.descriptors.rows);
         const std::vector<Eigen::Index> nearest = nearest_words(centres, rows);
         for (Eigen::Index i = 0; i < rows.rows(); i++) {
             const Eigen::Index w = nearest[static_cast<size_t>(i)];

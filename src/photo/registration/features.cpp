@@ -79,12 +79,13 @@ static cv::Mat detail_of(const cv::Mat &grey) {
     return small - smooth;
 }
 
-void take_roots(cv::Mat &descriptors) {
+cv::Mat take_roots(const cv::Mat &descriptors) {
+    cv::Mat roots(descriptors.rows, descriptors.cols, CV_16S), row;
     for (int y = 0; y < descriptors.rows; y++) {
-        cv::Mat row = descriptors.row(y);
-        row /= std::max(cv::norm(row, cv::NORM_L1), 1e-9);
-        cv::sqrt(row, row);
+        cv::sqrt(descriptors.row(y) / std::max(cv::norm(descriptors.row(y), cv::NORM_L1), 1e-9), row);
+        row.convertTo(roots.row(y), CV_16S, unit_length);
     }
+    return roots;
 }
 
 uint32_t most_features_of(size_t pictures) {
@@ -115,12 +116,13 @@ Features find_features(const std::string &file, uint32_t max_count) {
         const cv::KeyPoint &p = points[static_cast<size_t>(a)], &q = points[static_cast<size_t>(b)];
         return std::tie(q.size, p.pt.x, p.pt.y, p.angle) < std::tie(p.size, q.pt.x, q.pt.y, q.angle);
     });
+    cv::Mat sorted;
     for (int i : order) {
         const cv::KeyPoint &p = points[static_cast<size_t>(i)];
         found.places.emplace_back((p.pt.x + 0.5) * reduction - 0.5, (p.pt.y + 0.5) * reduction - 0.5);
-        found.descriptors.push_back(descriptors.row(i));
+        sorted.push_back(descriptors.row(i));
     }
-    take_roots(found.descriptors);
+    found.descriptors = take_roots(sorted);
     return found;
 }
 

@@ -10,11 +10,12 @@
 
 #include "photo/base/parallel.hpp"
 #include "photo/registration/candidates.hpp"
+#include "photo/registration/nearest_features.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr float ratio = 0.8f;        // Lowe's ratio of the distances to the nearest and second nearest feature
+constexpr double ratio = 0.8;        // Lowe's ratio of the distances to the nearest and second nearest feature
 constexpr double tolerance = 0.003;  // of the longer side: maximum distance of a match from the homography
 // Brown & Lowe 2007, equation 13, with our own shares: for unrelated pictures no homography held more than 7 of 90
 // matches; for related ones with little overlap 10 to 20.
@@ -27,34 +28,24 @@ constexpr int max_rounds = 5;         // of matching: links found determine the 
 
 using Match = std::pair<int, int>;
 
-// Every feature of `a` whose nearest one in `b` passes the ratio test and is not nearer to another. For descriptors of
-// length 1 the product is 1 - distance^2 / 2.
+// Every feature of the first picture whose nearest one in the second passes the ratio test and is not nearer to
+// another. For descriptors of length 1 the product is 1 - distance^2 / 2.
 std::vector<Match> match(const Features &first, const Features &second) {
     std::vector<Match> found;
-    const Descriptors a = descriptors_of(first), b = descriptors_of(second);
-    if (a.rows() < 2 || b.rows() < 2) return found;
-    constexpr Eigen::Index block = 256;  // rows whose products fit in the cache
-    std::vector<int> taken(static_cast<size_t>(b.rows()), -1);
-    std::vector<float> nearest(static_cast<size_t>(b.rows()), -2.0f);
-    Rows products;
-    for (Eigen::Index begin = 0; begin < a.rows(); begin += block) {
-        const Eigen::Index rows = std::min(block, a.rows() - begin);
-        products.noalias() = a.middleRows(begin, rows) * b.transpose();
-        for (Eigen::Index i = 0; i < rows; i++) {
-            const float *row = products.row(i).data();
-            float best = -2.0f, next = -2.0f;
-            size_t best_index = 0;
-            for (size_t j = 0; j < taken.size(); j++)
-                if (row[j] > best)
-                    next = best, best = row[j], best_index = j;
-                else if (row[j] > next)
-                    next = row[j];
-            if (1.0f - best < ratio * ratio * (1.0f - next) && best > nearest[best_index])
-                nearest[best_index] = best, taken[best_index] = static_cast<int>(begin + i);
-        }
+    const cv::Mat &a = first.descriptors, &b = second.descriptors;
+    if (a.rows < 2 || b.rows < 2) return found;
+    const std::vector<NearestFeatures> nearest = nearest_features(a.ptr<int16_t>(), a.rows, b.ptr<int16_t>(), b.rows);
+    constexpr double one = unit_length * unit_length;
+    std::vector<int> taken(static_cast<size_t>(b.rows), -1);
+    for (int i = 0; i < a.rows; i++) {
+        const NearestFeatures &n = nearest[static_cast<size_t>(i)];
+        int &other = taken[static_cast<size_t>(n.number)];
+        if (one - n.best < ratio * ratio * (one - n.next)
+            && (other < 0 || n.best > nearest[static_cast<size_t>(other)].best))
+            other = i;
     }
-    for (size_t to = 0; to < taken.size(); to++)
-        if (taken[to] >= 0) found.emplace_back(taken[to], static_cast<int>(to));
+    for (int to = 0; to < b.rows; to++)
+        if (taken[static_cast<size_t>(to)] >= 0) found.emplace_back(taken[static_cast<size_t>(to)], to);
     return found;
 }
 
