@@ -16,10 +16,20 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t max_link_matches = 40;      // matches used per link, spread over its overlap
+constexpr size_t max_link_matches = 40;      // matches used per link, spread over its overlap,
+constexpr size_t coarse_link_matches = 10;   // and until the scale of the loss is its last
 constexpr double widest_deg = 140.0;         // maximum angle of view of a rectilinear lens
 constexpr double last_scale = 0.001;         // of the loss, as a share of the longer side
+constexpr double never_fitting = 0.02;       // of the same, before the distortion is fitted: the camera moved
 constexpr double fitting_residual = 0.0012;  // of the same: a panorama with larger residuals may be a plane
+
+// An even selection of about `count`.
+Matches evenly(const Matches &matches, size_t count) {
+    Matches chosen;
+    const size_t step = std::max<size_t>(1, matches.size() / count);
+    for (size_t m = 0; m < matches.size(); m += step) chosen.push_back(matches[m]);
+    return chosen;
+}
 
 // Every cell of a grid over the first frame contributes its first match, until there are enough.
 Matches spread(const Matches &matches, const PictureOptics &first) {
@@ -55,21 +65,28 @@ constexpr double difference_steps[camera_unknowns] = {1e-4, 1e-5, 1e-5, 1e-5, 1e
 constexpr double known_hfov = 0.05, unknown_hfov = 0.6, usual_hfov_deg = 45.0;  // of the logarithm of the angle
 constexpr double expected_sigmas[camera_unknowns] = {0.0, 0.02, 0.05, 0.02, 1e4, 1e4, 1e4, 1.0, 1.0, 1.0};
 
-// Distance of a point seen by the first camera from its position in the second one, px.
-bool residual(const lensprof_camera &first, const lensprof_camera &second, const Match &match, Eigen::Vector2d &r) {
-    double direction[2];
-    if (!lensprof_camera_unproject(&first, match.first.x, match.first.y, direction)
-        || !lensprof_camera_project(&second, direction[0], direction[1], r.data()))
-        return false;
+// Distance of a point in this direction from its position in the second picture, px.
+bool residual(const lensprof_camera &second, const double direction[2], const Match &match, Eigen::Vector2d &r) {
+    if (!lensprof_camera_project(&second, direction[0], direction[1], r.data())) return false;
     r -= Eigen::Vector2d(match.second.x, match.second.y);
     return true;
+}
+
+// The same of a point seen by the first camera.
+bool residual(const lensprof_camera &first, const lensprof_camera &second, const Match &match, Eigen::Vector2d &r) {
+    double direction[2];
+    return lensprof_camera_unproject(&first, match.first.x, match.first.y, direction)
+           && residual(second, direction, match, r);
 }
 
 class CameraFit {
 public:
     CameraFit(const std::vector<PictureOptics> &pictures, const std::vector<PictureLink> &links)
         : pictures_(pictures), links_(links) {
-        for (const PictureLink &link : links) matches_.push_back(spread(link.matches, pictures[link.picture[0]]));
+        for (const PictureLink &link : links) {
+            matches_.push_back(spread(link.matches, pictures[link.picture[0]]));
+            coarse_matches_.push_back(evenly(matches_.back(), coarse_link_matches));
+        }
         for (const PictureOptics &p : pictures) lenses_ = std::max(lenses_, p.lens + 1);
         find_order();
     }
@@ -94,20 +111,24 @@ private:
     Eigen::Index column(size_t picture, Eigen::Index k) const;
     double px(size_t link, double share) const;
     double expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen::VectorXd *right) const;
-    double cost(double scale, size_t link_step = 1, size_t match_step = 1) const;
+    double cost(double scale, size_t link_step = 1) const;
     Part part_of(size_t link) const;
     void add_match(size_t link, const Match &match, double scale, Part &part) const;
     void add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const;
     void move(const Eigen::VectorXd &step);
     bool step(double scale, double &damping);
     void descend(double first_scale);
-    double fit(bool is_plane);
+    const std::vector<Matches> &used_matches() const { return is_coarse_ ? coarse_matches_ : matches_; }
+    double fit_undistorted(bool is_plane);
+    double fit_distorted(bool is_plane);
+    void fit_before_plane();
     std::vector<double> residuals() const;
     void level();
 
     const std::vector<PictureOptics> &pictures_;
     const std::vector<PictureLink> &links_;
-    std::vector<Matches> matches_;  // per link
+    std::vector<Matches> matches_, coarse_matches_;  // per link
+    bool is_coarse_ = false;                         // which of them a step uses
     uint32_t lenses_ = 1;
     std::vector<double> first_hfov_, hfov_, hfov_sigma_;  // per lens: the first guess, and the expectation
     size_t root_ = 0;                                     // the fixed picture
@@ -154,15 +175,16 @@ void CameraFit::find_angles_of_view() {
             hfov_[lens] = std::min(upper_median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
     const bool all_known = std::none_of(known.begin(), known.end(), [](const auto &k) { return k.empty(); });
     constexpr double guess_scale = 0.01;
-    constexpr size_t max_links = 300, match_step = 4;  // an even selection suffices
+    constexpr size_t max_links = 300;  // an even selection suffices
     choose_unknowns(false, false);
+    is_coarse_ = true;
     double least = 1e300;
     for (double factor = all_known ? 0.9 : 0.07; factor < (all_known ? 1.1 : 3.0); factor *= 1.01) {
         std::vector<double> guess = hfov_;
         for (uint32_t lens = 0; lens < lenses_; lens++)
             if (known[lens].empty() || all_known) guess[lens] = std::min(guess[lens] * factor, widest_deg);
         start(guess);
-        const double misfit = cost(guess_scale, 1 + links_.size() / max_links, match_step);
+        const double misfit = cost(guess_scale, 1 + links_.size() / max_links);
         if (misfit < least) least = misfit, first_hfov_ = guess;
     }
 }
@@ -278,14 +300,14 @@ double CameraFit::expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen
     return sum;
 }
 
-// Uses every match_step-th match of every link_step-th link.
-double CameraFit::cost(double scale, size_t link_step, size_t match_step) const {
+// Uses every link_step-th link.
+double CameraFit::cost(double scale, size_t link_step) const {
     double sum = expectation(nullptr, nullptr);
     Eigen::Vector2d r;
     for (size_t n = 0; n < links_.size(); n += link_step) {
         const auto &p = links_[n].picture;
-        for (size_t m = 0; m < matches_[n].size(); m += match_step) {
-            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], matches_[n][m], r);
+        for (const Match &m : used_matches()[n]) {
+            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], m, r);
             sum += std::log1p(seen ? r.squaredNorm() / std::pow(px(n, scale), 2) : 1.0 / (scale * scale));
         }
     }
@@ -305,25 +327,29 @@ CameraFit::Part CameraFit::part_of(size_t link) const {
     return part;
 }
 
+// Forward differences. The direction of the match is shared by all unknowns of the second camera alone.
 void CameraFit::add_match(size_t link, const Match &match, double scale, Part &part) const {
     const uint32_t *p = links_[link].picture;
-    Eigen::Vector2d r;
-    if (!residual(cameras_[p[0]], cameras_[p[1]], match, r)) return;
+    lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
+    double seen[2];
+    Eigen::Vector2d r, moved;
+    if (!lensprof_camera_unproject(&camera[0], match.first.x, match.first.y, seen)
+        || !residual(camera[1], seen, match, r))
+        return;
     const double s = px(link, scale), weight = 1.0 / (s * s + r.squaredNorm());  // rho'(e) / s^2
     Eigen::Matrix<double, 2, 2 *camera_unknowns> rows = Eigen::Matrix<double, 2, 2 * camera_unknowns>::Zero();
     for (Eigen::Index n = 0; n < part.count; n++) {
         const Eigen::Index k = part.unknown[n];
         const int end = part.end[n];
         const bool is_shared = k < lens_unknowns && part.column[n] == column(p[1 - end], k);
-        Eigen::Vector2d moved[2];
-        for (int side = 0; side < 2; side++) {
-            lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
-            const double step = side ? difference_steps[k] : -difference_steps[k];
-            value(camera[end], k) += step;
-            if (is_shared) value(camera[1 - end], k) += step;
-            if (!residual(camera[0], camera[1], match, moved[side])) return;
-        }
-        rows.col(n) = (moved[1] - moved[0]) / (2.0 * difference_steps[k]);
+        const double before[2] = {value(camera[0], k), value(camera[1], k)};
+        value(camera[end], k) += difference_steps[k];
+        if (is_shared) value(camera[1 - end], k) += difference_steps[k];
+        const bool is_seen = end == 1 && !is_shared ? residual(camera[1], seen, match, moved)
+                                                    : residual(camera[0], camera[1], match, moved);
+        if (!is_seen) return;
+        for (int side = 0; side < 2; side++) value(camera[side], k) = before[side];
+        rows.col(n) = (moved - r) / difference_steps[k];
     }
     part.normal += weight * rows.transpose() * rows;
     part.right -= weight * rows.transpose() * r;
@@ -340,7 +366,7 @@ void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &n
     std::vector<Part> parts(links_.size());
     for_each_item(static_cast<uint32_t>(links_.size()), thread_count(0), [&](uint32_t n, uint32_t) {
         parts[n] = part_of(n);
-        for (const Match &m : matches_[n]) add_match(n, m, scale, parts[n]);
+        for (const Match &m : used_matches()[n]) add_match(n, m, scale, parts[n]);
         return true;
     });
     for (const Part &part : parts)
@@ -388,6 +414,7 @@ bool CameraFit::step(double scale, double &damping) {
 void CameraFit::descend(double first_scale) {
     for (double scale = first_scale;; scale = std::max(last_scale, scale * 0.5)) {
         double damping = 1e-3;
+        is_coarse_ = scale > last_scale;
         const int steps = scale > last_scale ? 5 : 40;
         for (int n = 0; n < steps && step(scale, damping);) n++;
         if (scale <= last_scale) return;
@@ -434,26 +461,37 @@ void CameraFit::level() {
 }
 
 // Starts from the current cameras. The distortion is added once all else is nearly right.
-double CameraFit::fit(bool is_plane) {
+double CameraFit::fit_undistorted(bool is_plane) {
     choose_unknowns(false, is_plane);
     descend(0.1);
+    return cost(last_scale);
+}
+
+double CameraFit::fit_distorted(bool is_plane) {
     choose_unknowns(true, is_plane);
     descend(0.004);
     return cost(last_scale);
 }
 
+// Starts from turned cameras, and from what the homographies show.
+void CameraFit::fit_before_plane() {
+    const double by_turns = fit_undistorted(true);
+    const std::vector<lensprof_camera> moved = cameras_;
+    start(hfov_);
+    start_before_plane();
+    if (by_turns < fit_undistorted(true)) cameras_ = moved;
+    fit_distorted(true);
+}
+
 FoundCameras CameraFit::run() {
     find_angles_of_view();
     start(first_hfov_);
-    fit(false);
+    fit_undistorted(false);
+    if (upper_median(residuals()) < never_fitting) fit_distorted(false);
     const std::vector<lensprof_camera> rotated = cameras_;
     const std::vector<double> off = residuals();
     if (upper_median(off) > fitting_residual) {
-        const double by_turns = fit(true);
-        const std::vector<lensprof_camera> moved = cameras_;
-        start(hfov_);
-        start_before_plane();
-        if (by_turns < fit(true)) cameras_ = moved;
+        fit_before_plane();
         const std::vector<double> current = residuals();
         if (upper_median(current) < 0.6 * upper_median(off)) return {SceneKind::plane, cameras_, current};
         cameras_ = rotated;
