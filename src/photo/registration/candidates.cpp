@@ -1,10 +1,8 @@
 #include "photo/registration/candidates.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <map>
 #include <set>
-
-#include <Eigen/Core>
 
 #include "threads/item_loop.hpp"
 
@@ -21,8 +19,7 @@ Rows descriptors_of(const Features &picture, int first, int count) {
 
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
 constexpr uint32_t next_to = 2;          // pictures before and after
-constexpr size_t enough_links = 20;      // maximum further candidates per picture
-constexpr uint32_t max_similar = 12;     // pictures most like one
+constexpr size_t enough_links = 20;      // per picture, of which no further ones are needed
 constexpr int words = 64;
 constexpr size_t sample_size = 20000;  // descriptors that the visual words are made from
 constexpr int rounds = 10;             // of k-means
@@ -85,31 +82,46 @@ Eigen::VectorXf aggregate(const Rows &centres, const Features &picture) {
     return descriptor;
 }
 
-void add_most_similar(const std::vector<Features> &pictures, std::set<PicturePair> &pairs) {
+}  // namespace
+
+SimilarPictures::SimilarPictures(const std::vector<Features> &pictures) {
+    for (const Features &picture : pictures) is_empty_.push_back(picture.descriptors.rows == 0);
     const Rows centres = find_words(pictures);
     if (centres.rows() == 0) return;
     const auto count = static_cast<uint32_t>(pictures.size());
-    Rows all(count, words * descriptor_length);
+    descriptors_.resize(count, words * descriptor_length);
     for_each_item(count, thread_count(0), [&](uint32_t i, uint32_t) {
-        all.row(i) = aggregate(centres, pictures[i]).transpose();
+        descriptors_.row(i) = aggregate(centres, pictures[i]).transpose();
         return true;
     });
-    std::vector<uint32_t> order(count);
-    for (uint32_t i = 0; i < count; i++) {
-        Eigen::VectorXf similarity = all * all.row(i).transpose();
-        for (uint32_t j = 0; j < count; j++)
-            if (pictures[j].descriptors.rows == 0) similarity[j] = -2.0f;  // after all others: it overlaps nothing
-        std::iota(order.begin(), order.end(), 0u);
-        const auto end = order.begin() + std::min(count, max_similar + 1);  // including itself
-        std::partial_sort(order.begin(), end, order.end(), [&](uint32_t a, uint32_t b) {
-            return similarity[a] > similarity[b] || (similarity[a] == similarity[b] && a < b);
-        });
-        for (auto j = order.begin(); j != end; ++j)
-            if (*j != i) pairs.insert(std::minmax(i, *j));
-    }
 }
 
-}  // namespace
+std::vector<PicturePair> SimilarPictures::pairs(uint32_t count, const Takes &takes) const {
+    constexpr uint32_t block = 32;  // pictures whose similarities are computed at once
+    const auto pictures = static_cast<uint32_t>(descriptors_.rows());
+    std::vector<std::vector<uint32_t>> similar(pictures);
+    for_each_item((pictures + block - 1) / block, thread_count(0), [&](uint32_t number, uint32_t) {
+        const uint32_t begin = number * block, end = std::min(begin + block, pictures);
+        const Rows similarity = descriptors_.middleRows(begin, end - begin) * descriptors_.transpose();
+        for (uint32_t i = begin; i < end; i++) {
+            std::vector<uint32_t> &others = similar[i];
+            for (uint32_t j = 0; j < pictures; j++)
+                if (j != i && !is_empty_[i] && !is_empty_[j]) others.push_back(j);
+            const auto row = similarity.row(i - begin);
+            std::sort(others.begin(), others.end(),
+                      [&](uint32_t a, uint32_t b) { return row[a] > row[b] || (!(row[b] > row[a]) && a < b); });
+            size_t taken = 0;
+            for (size_t n = 0; n < others.size() && taken < count; n++)
+                if (takes(i, others[n])) others[taken++] = others[n];
+            others.resize(taken);
+        }
+        return true;
+    });
+    std::set<PicturePair> pairs;
+    for (uint32_t i = 0; i < pictures; i++)
+        for (const uint32_t j : similar[i]) pairs.insert(std::minmax(i, j));
+    return {pairs.begin(), pairs.end()};
+}
 
 std::vector<PicturePair> candidate_pairs(const std::vector<Features> &pictures) {
     const auto count = static_cast<uint32_t>(pictures.size());
@@ -117,7 +129,11 @@ std::vector<PicturePair> candidate_pairs(const std::vector<Features> &pictures) 
     std::set<PicturePair> pairs;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j = i + 1; j < count && j - i <= reach; j++) pairs.emplace(i, j);
-    if (count > all_pairs_up_to) add_most_similar(pictures, pairs);
+    if (count > all_pairs_up_to) {
+        const std::vector<PicturePair> similar =
+            SimilarPictures(pictures).pairs(max_similar, [](uint32_t, uint32_t) { return true; });
+        pairs.insert(similar.begin(), similar.end());
+    }
     return {pairs.begin(), pairs.end()};
 }
 
@@ -133,6 +149,61 @@ std::vector<PicturePair> further_pairs(uint32_t pictures, const std::vector<Pict
                 const PicturePair pair = std::minmax(linked_pictures[m], linked_pictures[n]);
                 if (!std::binary_search(tried.begin(), tried.end(), pair)) pairs.insert(pair);
             }
+    }
+    return {pairs.begin(), pairs.end()};
+}
+
+void LinkedPictures::add_tried(const std::vector<PicturePair> &pairs) {
+    tried_.insert(tried_.end(), pairs.begin(), pairs.end());
+    std::sort(tried_.begin(), tried_.end());
+}
+
+void LinkedPictures::add_link(const PicturePair &pair) {
+    for (const auto &[picture, other] : {pair, PicturePair(pair.second, pair.first)}) {
+        std::vector<uint32_t> &others = others_[picture];
+        others.insert(std::lower_bound(others.begin(), others.end(), other), other);
+    }
+}
+
+bool LinkedPictures::is_tried(const PicturePair &pair) const {
+    return std::binary_search(tried_.begin(), tried_.end(), pair);
+}
+
+bool LinkedPictures::is_linked(uint32_t picture, uint32_t other) const {
+    return std::binary_search(others_[picture].begin(), others_[picture].end(), other);
+}
+
+bool LinkedPictures::is_joined(uint32_t picture) const { return others_[picture].size() >= enough_links; }
+
+bool LinkedPictures::are_near(uint32_t picture, uint32_t other) const {
+    return is_linked(picture, other)
+           || std::any_of(others_[picture].begin(), others_[picture].end(),
+                          [&](uint32_t between) { return is_linked(between, other); });
+}
+
+std::vector<PicturePair> LinkedPictures::in_sequence(uint32_t distance) const {
+    std::vector<PicturePair> pairs;
+    for (uint32_t i = 0; i + distance < count(); i++) {
+        const uint32_t middle = i + distance / 2;
+        const bool may_overlap = distance <= next_to || (is_linked(i, middle) && is_linked(middle, i + distance));
+        if (may_overlap && !are_joined({i, i + distance})) pairs.emplace_back(i, i + distance);
+    }
+    return pairs;
+}
+
+std::vector<PicturePair> LinkedPictures::through_common() const {
+    std::set<PicturePair> pairs;
+    for (uint32_t i = 0; i < count(); i++) {
+        if (is_joined(i)) continue;
+        std::map<uint32_t, size_t> common;  // by picture
+        for (const uint32_t between : others_[i])
+            for (const uint32_t other : others_[between])
+                if (other != i && !is_tried(std::minmax(i, other))) common[other]++;
+        std::vector<std::pair<uint32_t, size_t>> ranked(common.begin(), common.end());
+        std::stable_sort(ranked.begin(), ranked.end(),
+                         [](const auto &a, const auto &b) { return a.second > b.second; });
+        ranked.resize(std::min(ranked.size(), 2 * (enough_links - others_[i].size())));
+        for (const auto &candidate : ranked) pairs.insert(std::minmax(i, candidate.first));
     }
     return {pairs.begin(), pairs.end()};
 }

@@ -89,7 +89,7 @@ cv::Mat take_roots(const cv::Mat &descriptors) {
 }
 
 uint32_t most_features_of(size_t pictures) {
-    constexpr size_t fewest = 800, usual = 3000, of_all = 600000;  // 300 MB
+    constexpr size_t fewest = 800, usual = 3000, of_all = 240000;  // 60 MB
     return static_cast<uint32_t>(std::clamp(of_all / std::max<size_t>(pictures, 1), fewest, usual));
 }
 

@@ -20,7 +20,7 @@ struct Features {
 constexpr int descriptor_length = 128;
 constexpr double unit_length = 32767.0;  // of a descriptor: products of two fit in 30 bits
 
-// Maximum number of features per picture of `pictures`: 3000 for few and 800 for many, which take 400 kB.
+// Maximum number of features per picture of `pictures`: 3000 for few and 800 for many, which take 200 kB.
 uint32_t most_features_of(size_t pictures);
 
 // Features of a picture, about `max_count` of them, largest first. Failure for an unreadable picture.

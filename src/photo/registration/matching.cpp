@@ -25,14 +25,29 @@ constexpr double still = 0.002;       // of the longer side: less than the movem
 constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
 constexpr int max_draws = 3000;       // of four matches for a homography
 constexpr int max_rounds = 5;         // of matching: links found determine the next candidates
+// Up to this number of pictures, all links are looked for, with all features. Beyond, a picture that has enough links
+// needs no more, and the largest features of two suffice for a link if as many as these match.
+constexpr size_t few_pictures = 40;
+constexpr int quick_features = 1000;
+constexpr size_t plenty_matches = 100;
+constexpr uint32_t max_revisits = 2;  // pictures most like one, of those that are not near by links
+
+enum class Effort {
+    quick,
+    thorough
+};  // with the largest features, or with all
 
 using Match = std::pair<int, int>;
 
 // Every feature of the first picture whose nearest one in the second passes the ratio test and is not nearer to
 // another. For descriptors of length 1 the product is 1 - distance^2 / 2.
-std::vector<Match> match(const Features &first, const Features &second) {
+std::vector<Match> match(const Features &first, const Features &second, Effort effort) {
     std::vector<Match> found;
-    const cv::Mat &a = first.descriptors, &b = second.descriptors;
+    const auto used = [&](const cv::Mat &descriptors) {
+        return descriptors.rowRange(
+            0, effort == Effort::quick ? std::min(descriptors.rows, quick_features) : descriptors.rows);
+    };
+    const cv::Mat a = used(first.descriptors), b = used(second.descriptors);
     if (a.rows < 2 || b.rows < 2) return found;
     const std::vector<NearestFeatures> nearest = nearest_features(a.ptr<int16_t>(), a.rows, b.ptr<int16_t>(), b.rows);
     constexpr double one = unit_length * unit_length;
@@ -94,11 +109,11 @@ bool is_still_scene(const Places &stayed, const Places &moved, const Features &p
 // Uses what moved between frames; or, if that shows nothing, everything: what is fixed to the frame (a date stamp, a
 // logo, dirt) matches in every pair of pictures. Nothing moves with a stationary camera, except that matches of
 // repetitive objects may agree by chance.
-std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
+std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair, Effort effort) {
     const Features &a = pictures[pair.first], &b = pictures[pair.second];
     const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
     Places all, moved, stayed;
-    for (const Match &m : match(a, b)) {
+    for (const Match &m : match(a, b, effort)) {
         const cv::Point2d from = a.places[static_cast<size_t>(m.first)], to = b.places[static_cast<size_t>(m.second)];
         all.emplace_back(from, to);
         (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
@@ -156,22 +171,101 @@ void drop_static(size_t pictures, std::vector<PictureLink> &links) {
     links.erase(std::remove_if(links.begin(), links.end(), is_fixed), links.end());
 }
 
+// Matches pairs and keeps their links.
+class LinkSearch {
+public:
+    LinkSearch(const std::vector<Features> &pictures, Events &events)
+        : pictures_(pictures), events_(events), linked_(static_cast<uint32_t>(pictures.size())) {}
+
+    // All links that the candidates lead to.
+    void find_all() {
+        std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures_);
+        for (int round = 0; round < max_rounds && !pairs.empty(); round++) {
+            const size_t before = links.size();
+            try_all(pairs, round ? further_step : step,
+                    [&](const PicturePair &pair) { return link(pictures_, pair, Effort::thorough); });
+            for (size_t n = before; n < links.size(); n++)
+                linked.emplace_back(links[n].picture[0], links[n].picture[1]);
+            tried.insert(tried.end(), pairs.begin(), pairs.end());
+            std::sort(tried.begin(), tried.end());
+            pairs = further_pairs(static_cast<uint32_t>(pictures_.size()), linked, tried);
+        }
+    }
+
+    // Enough links per picture: in the sequence, with growing distance, then between similar pictures, then through
+    // those found. Last between similar ones that are not near by then: where the camera came back.
+    void find_enough() {
+        std::vector<PicturePair> pairs = linked_.in_sequence(1);
+        for (uint32_t distance = 2; !pairs.empty(); distance *= 2) {
+            try_most(pairs, step);
+            pairs = linked_.in_sequence(distance);
+        }
+        const SimilarPictures similar(pictures_);
+        pairs = similar.pairs(max_similar, [](uint32_t, uint32_t) { return true; });
+        remove(pairs, [&](const PicturePair &pair) { return linked_.are_joined(pair); });
+        try_most(pairs, step);
+        try_through_common();
+        try_most(similar.pairs(max_revisits, [&](uint32_t i, uint32_t j) { return !linked_.are_near(i, j); }),
+                 further_step);
+        try_through_common();
+    }
+
+    std::vector<PictureLink> links;
+
+private:
+    static constexpr const char *step = "matching pictures", *further_step = "matching further pictures";
+
+    template <class Is>
+    static void remove(std::vector<PicturePair> &pairs, const Is &is) {
+        pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is), pairs.end());
+    }
+
+    template <class FindLink>
+    void try_all(const std::vector<PicturePair> &pairs, const char *what, const FindLink &find_link) {
+        std::vector<std::optional<PictureLink>> found(pairs.size());
+        for_each_parallel(static_cast<uint32_t>(pairs.size()), what, events_,
+                          [&](uint32_t n) { found[n] = find_link(pairs[n]); });
+        for (size_t n = 0; n < pairs.size(); n++) {
+            if (!found[n]) continue;
+            links.push_back(std::move(*found[n]));
+            linked_.add_link(pairs[n]);
+        }
+    }
+
+    // Those not tried before. All features are used if the largest ones match too little, except for two pictures that
+    // are joined.
+    void try_most(std::vector<PicturePair> pairs, const char *what) {
+        remove(pairs, [&](const PicturePair &pair) { return linked_.is_tried(pair); });
+        try_all(pairs, what, [&](const PicturePair &pair) {
+            std::optional<PictureLink> found = link(pictures_, pair, Effort::quick);
+            const bool is_clear = found && !found->is_still && found->matches.size() >= plenty_matches;
+            return is_clear || linked_.are_joined(pair) ? found : link(pictures_, pair, Effort::thorough);
+        });
+        linked_.add_tried(pairs);
+    }
+
+    void try_through_common() {
+        for (int round = 0; round < max_rounds; round++) {
+            const std::vector<PicturePair> pairs = linked_.through_common();
+            if (pairs.empty()) return;
+            try_most(pairs, further_step);
+        }
+    }
+
+    const std::vector<Features> &pictures_;
+    Events &events_;
+    LinkedPictures linked_;
+};
+
 }  // namespace
 
 std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Events &events) {
-    std::vector<PictureLink> links;
-    std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures);
-    for (int round = 0; round < max_rounds && !pairs.empty(); round++) {
-        std::vector<std::optional<PictureLink>> found(pairs.size());
-        for_each_parallel(static_cast<uint32_t>(pairs.size()),
-                          round ? "matching further pictures" : "matching pictures", events,
-                          [&](uint32_t n) { found[n] = link(pictures, pairs[n]); });
-        for (size_t n = 0; n < pairs.size(); n++)
-            if (found[n]) links.push_back(std::move(*found[n])), linked.push_back(pairs[n]);
-        tried.insert(tried.end(), pairs.begin(), pairs.end());
-        std::sort(tried.begin(), tried.end());
-        pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
-    }
+    LinkSearch search(pictures, events);
+    if (pictures.size() <= few_pictures)
+        search.find_all();
+    else
+        search.find_enough();
+    std::vector<PictureLink> links = std::move(search.links);
     drop_chance(pictures.size(), links);
     drop_static(pictures.size(), links);
     std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
