@@ -20,7 +20,7 @@ constexpr size_t max_link_matches = 40;      // matches used per link, spread ov
 constexpr size_t coarse_link_matches = 10;   // and until the scale of the loss is its last
 constexpr double widest_deg = 140.0;         // maximum angle of view of a rectilinear lens
 constexpr double last_scale = 0.001;         // of the loss, as a share of the longer side
-constexpr double never_fitting = 0.02;       // of the same, before the distortion is fitted: the camera moved
+constexpr double lost_residual = 0.005;      // of the same: half of the links are not explained, fine steps are in vain
 constexpr double fitting_residual = 0.0012;  // of the same: a panorama with larger residuals may be a plane
 
 // An even selection of about `count`.
@@ -411,10 +411,12 @@ bool CameraFit::step(double scale, double &damping) {
     return false;
 }
 
+// Gives up before the last scale if the coarse steps have shown that no such cameras took the pictures.
 void CameraFit::descend(double first_scale) {
     for (double scale = first_scale;; scale = std::max(last_scale, scale * 0.5)) {
         double damping = 1e-3;
         is_coarse_ = scale > last_scale;
+        if (!is_coarse_ && upper_median(residuals()) > lost_residual) return;
         const int steps = scale > last_scale ? 5 : 40;
         for (int n = 0; n < steps && step(scale, damping);) n++;
         if (scale <= last_scale) return;
@@ -487,7 +489,7 @@ FoundCameras CameraFit::run() {
     find_angles_of_view();
     start(first_hfov_);
     fit_undistorted(false);
-    if (upper_median(residuals()) < never_fitting) fit_distorted(false);
+    fit_distorted(false);
     const std::vector<lensprof_camera> rotated = cameras_;
     const std::vector<double> off = residuals();
     if (upper_median(off) > fitting_residual) {
