@@ -1,5 +1,7 @@
 // Cameras and candidates of pictures without a project, from simulated matches.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <opencv2/calib3d.hpp>
@@ -190,6 +192,99 @@ void test_candidates(void **) {
     assert_true(further[0] == PicturePair(0, 2));
 }
 
+// Pictures in a ring about the camera, each of which shows a part of it, and some of nothing else.
+struct Ring {
+    static constexpr uint32_t kPictures = 60, kUnrelated = 4;
+    static constexpr int kStep = 100, kPoints = 900;
+    std::vector<Features> pictures;
+
+    Ring() {
+        std::mt19937 random(5);
+        std::normal_distribution<float> normal(0.0f, 1.0f);
+        std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        constexpr double around = kStep * double(kPictures);
+        cv::Mat own(kPoints, descriptor_length, CV_32F);
+        std::vector<cv::Point2d> places;
+        for (int n = 0; n < kPoints; n++) {
+            places.emplace_back(uniform(random) * around, uniform(random) * kHeight);
+            for (int x = 0; x < descriptor_length; x++) own.at<float>(n, x) = std::fabs(normal(random));
+        }
+        for (uint32_t i = 0; i < kPictures + kUnrelated; i++) {
+            Features picture;
+            picture.width = kWidth, picture.height = kHeight;
+            cv::Mat seen;
+            for (int n = 0; n < kPoints; n++) {
+                const cv::Point2d &place = places[size_t(n)];
+                const double x = std::fmod(place.x - kStep * double(i) + 2.0 * around, around);
+                if (x >= kWidth) continue;
+                picture.places.emplace_back(x + 0.3 * normal(random), place.y + 0.3 * normal(random));
+                cv::Mat row = own.row(n).clone();
+                for (int k = 0; k < descriptor_length; k++) {
+                    const float noise = i < kPictures ? 0.1f * normal(random) : 3.0f * normal(random);
+                    row.at<float>(0, k) = std::max(0.0f, row.at<float>(0, k) + noise);
+                }
+                seen.push_back(row);
+            }
+            picture.descriptors = take_roots(seen);
+            pictures.push_back(picture);
+        }
+    }
+};
+
+using Pairs = std::vector<PicturePair>;
+
+// The links of the ring's pictures in this order, by their numbers in it.
+Pairs links_of(const Ring &ring, const std::vector<uint32_t> &order) {
+    std::vector<Features> pictures;
+    for (const uint32_t i : order) pictures.push_back(ring.pictures[i]);
+    Events events;
+    Pairs pairs;
+    for (const PictureLink &link : find_links(pictures, events))
+        pairs.push_back(std::minmax(order[link.picture[0]], order[link.picture[1]]));
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+// Many pictures have enough links each, in any order: those next to each other, and the first with the last.
+void test_links_of_many(void **) {
+    const Ring ring;
+    std::vector<uint32_t> order(ring.pictures.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::vector<uint32_t> shuffled = order;
+    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(9));
+    const size_t all = Ring::kPictures * (kWidth / Ring::kStep - 1);  // that overlap
+    for (const std::vector<uint32_t> &own : {order, shuffled}) {
+        const Pairs pairs = links_of(ring, own);
+        std::vector<size_t> count(ring.pictures.size());
+        for (const auto &[a, b] : pairs) count[a]++, count[b]++;
+        for (uint32_t i = 0; i < ring.pictures.size(); i++)
+            assert_true(i < Ring::kPictures ? count[i] >= 10 : count[i] == 0);
+        for (uint32_t i = 0; i < Ring::kPictures; i++)
+            assert_true(
+                std::binary_search(pairs.begin(), pairs.end(), PicturePair(std::minmax(i, (i + 1) % Ring::kPictures))));
+        assert_true(pairs.size() <= all);
+        assert_true(pairs == links_of(ring, own));
+    }
+}
+
+// A sequence is linked with growing distance, where it is linked half way; a picture with enough links needs no more.
+void test_candidates_of_a_sequence(void **) {
+    LinkedPictures linked(40);
+    assert_int_equal(linked.in_sequence(2).size(), 38);
+    assert_true(linked.in_sequence(4).empty());
+    for (uint32_t i = 0; i + 2 < 20; i++) linked.add_link({i, i + 2});
+    assert_int_equal(linked.in_sequence(4).size(), 16);
+    assert_true(linked.are_near(3, 7) && !linked.are_near(3, 9));
+    const std::vector<PicturePair> through = linked.through_common();
+    assert_int_equal(through.size(), 16);
+    linked.add_tried(through);
+    assert_true(linked.through_common().empty() && linked.is_tried({3, 7}));
+    LinkedPictures star(40);
+    for (uint32_t i = 1; i < 25; i++) star.add_link({0, i});
+    assert_true(star.is_joined(0) && !star.is_joined(1));
+    for (const auto &[a, b] : star.through_common()) assert_true(a > 0 && b > 0);
+}
+
 void test_groups(void **) {
     std::vector<PictureLink> links(3);
     links[0].picture[0] = 4, links[0].picture[1] = 5;
@@ -308,6 +403,8 @@ int main() {
         cmocka_unit_test(test_a_camera_that_moved_over_a_plane),
         cmocka_unit_test(test_nearest_features),
         cmocka_unit_test(test_candidates),
+        cmocka_unit_test(test_links_of_many),
+        cmocka_unit_test(test_candidates_of_a_sequence),
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_turned_copies),
         cmocka_unit_test(test_upright_copies),

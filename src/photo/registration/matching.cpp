@@ -239,7 +239,9 @@ private:
         try_all(pairs, what, [&](const PicturePair &pair) {
             std::optional<PictureLink> found = link(pictures_, pair, Effort::quick);
             const bool is_clear = found && !found->is_still && found->matches.size() >= plenty_matches;
-            return is_clear || linked_.are_joined(pair) ? found : link(pictures_, pair, Effort::thorough);
+            const auto has_more = [&](uint32_t i) { return pictures_[i].descriptors.rows > quick_features; };
+            const bool is_all = !has_more(pair.first) && !has_more(pair.second);
+            return is_clear || is_all || linked_.are_joined(pair) ? found : link(pictures_, pair, Effort::thorough);
         });
         linked_.add_tried(pairs);
     }
