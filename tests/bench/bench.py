@@ -12,6 +12,7 @@ import falloff_forms
 import flat
 import gallery
 import radiance
+import frames
 import photographs
 import real
 import reconstruction
@@ -25,7 +26,7 @@ import trials
 import verdicts
 
 PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "sweep", "scale",
-         "speed", "radiance", "knowledge", "photographs", "reconstruction", "real")
+         "speed", "radiance", "knowledge", "photographs", "frames-registration", "reconstruction", "real")
 
 
 def parse():
@@ -65,7 +66,7 @@ def main():
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "scale": [], "speed": {},
                "verdicts": {}, "cards": {}, "forms": {}, "trials": {}, "radiance": {}, "knowledge": [],
-               "photographs": [], "moving": [], "reconstruction": {},
+               "photographs": [], "moving": [], "frames": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
@@ -99,6 +100,8 @@ def main():
         import knowledge  # needs the library in addition to the program
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
                                                  options.jobs, say)
+    if "frames-registration" in options.only:
+        results["frames"] = frames.run_all(options.quick, say)
     if "photographs" in options.only:
         results["photographs"] = photographs.run_all(options.real, options.quick, say)
         results["moving"] = photographs.run_moving(options.real, say)

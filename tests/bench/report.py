@@ -450,6 +450,19 @@ def moving(records):
     return lines + [""]
 
 
+def of_frames(records):
+    """Registration of the frames of a pan."""
+    if not records:
+        return []
+    lines = ["## Frames of a pan", "", "`build` on rendered frames of 640 x 360: CPU time of the whole command, wall time"
+             " of the registration, and CPU time of COLMAP's feature_extractor and sequential_matcher.", ""]
+    lines += header("frames", "joined", "links", "CPU, s", "CPU per frame, s", "registration wall, s", "memory, MB", "COLMAP CPU, s")
+    for r in records:
+        lines.append(row(r["pictures"], r["joined"], r["links"], number(r["cpu_s"]), number(r["cpu_s"] / r["pictures"]),
+                         number(sum(r["steps"].values())), number(r["peak_mb"]), number(r.get("colmap_cpu_s"))))
+    return lines + [""]
+
+
 def ratio_of(ours, theirs, key):
     return ours[key] / theirs[key] if theirs.get(key) else None
 
@@ -473,7 +486,7 @@ def document(results):
     lines += flat(results["flat"]) + cards(results["cards"]) + forms(results["forms"]) + trials(results["trials"])
     lines += static(results["static"]) + sweep(results["sweep"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
-    lines += photographs(results["photographs"]) + moving(results["moving"])
+    lines += photographs(results["photographs"]) + moving(results["moving"]) + of_frames(results["frames"])
     lines += tables(results["reconstruction"])
     lines += gallery(results["real"]) + brackets(results["brackets"])
     return "\n".join(lines).rstrip() + "\n"

@@ -6,8 +6,9 @@
 #                      [--sequences N] [--tune]
 #                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, cards, forms (shading
 #                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, sweep, scale,
-#                      speed, radiance, knowledge, photographs (also of --real DIR), reconstruction (with colmap; also
-#                      DIR/reconstruction), real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
+#                      speed, radiance, knowledge, photographs (also of --real DIR), frames-registration,
+#                      reconstruction (with colmap; also DIR/reconstruction), real (pano.pto and hugin.pto below DIR,
+#                      and folders of DIR/brackets)
 #   tests/bench/run.sh --only reconstruction --match terrain,drone   only these sets: terrain, room, drone, and with
 #                      --real DIR the folders of DIR/reconstruction; existing database.db and sparse are used
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps

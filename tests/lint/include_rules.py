@@ -105,7 +105,7 @@ ROOMS = {
 # Headers that only a single room may use.
 ROOM_HEADERS = {
     "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
-    "src/photo/registration": {"Eigen/*", "opencv2/*"},
+    "src/photo/registration": {"Eigen/*", "opencv2/*", "immintrin.h"},  # nearest_features.cpp
     "src/photo/reconstruction": {"sqlite3.h"},
     "src/cli/fitting": {"zip.h"},
     "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "fitsio.h", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",

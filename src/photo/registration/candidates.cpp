@@ -97,7 +97,7 @@ SimilarPictures::SimilarPictures(const std::vector<Features> &pictures) {
 }
 
 std::vector<PicturePair> SimilarPictures::pairs(uint32_t count, const Takes &takes) const {
-    constexpr uint32_t block = 32;  // pictures whose similarities are computed at once
+    constexpr uint32_t block = 32;  // pictures whose similarities are computed together
     const auto pictures = static_cast<uint32_t>(descriptors_.rows());
     std::vector<std::vector<uint32_t>> similar(pictures);
     for_each_item((pictures + block - 1) / block, thread_count(0), [&](uint32_t number, uint32_t) {
