@@ -21,11 +21,11 @@
  * squares solution of these ratios. A frame that agrees with none before it begins a new segment (a cut), unless the
  * frames after it agree again with those before it; then it is left out.
  *
- * Two effects are no common factor of a frame. Lamps flicker from line to line where the shutter is fast: on request,
+ * Two effects change a part of the frame only. Lamps flicker from line to line where the shutter is fast: on request,
  * the ratio of each row of cells is compared with that of the frame. The falloff depends on the aperture: where the
  * aperture changes, the difference of the falloffs is measured as exp2(q1 r^2 + q2 r^4). Both are gain grids.
  *
- * Light and exposure of a stationary camera cannot be told apart: `ev` contains both. The wanted curve decides what
+ * A stationary camera does not show light and exposure apart: `ev` contains both. The wanted curve decides what
  * stays: a smooth curve through them, or through what remains without the settings of the camera.
  *
  * Memory: about 2 MiB, and 300 bytes per frame. Threads: calls on different objects are independent; those on one

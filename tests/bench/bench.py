@@ -21,12 +21,13 @@ import scale
 import speed
 import static
 import sweep
+import timelapse
 import tools
 import trials
 import verdicts
 
-PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "sweep", "scale",
-         "speed", "radiance", "knowledge", "photographs", "frames-registration", "reconstruction", "real")
+PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "sweep", "timelapse",
+         "scale", "speed", "radiance", "knowledge", "photographs", "frames-registration", "reconstruction", "real")
 
 
 def parse():
@@ -64,7 +65,7 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "scale": [], "speed": {},
+               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "timelapse": {}, "scale": [], "speed": {},
                "verdicts": {}, "cards": {}, "forms": {}, "trials": {}, "radiance": {}, "knowledge": [],
                "photographs": [], "moving": [], "frames": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
@@ -78,6 +79,8 @@ def main():
         results["scale"] = scale.run_all(options.quick, say)
     if "static" in options.only:
         results["static"] = static.run_all(options.quick, say)
+    if "timelapse" in options.only:
+        results["timelapse"] = timelapse.run_all(options.quick, options.match, say)
     if "sweep" in options.only:
         results["sweep"] = sweep.run_all(options.quick, options.tune, options.match, say)
     for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),

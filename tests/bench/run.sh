@@ -5,7 +5,8 @@
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
 #                      [--sequences N] [--tune]
 #                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, cards, forms (shading
-#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, sweep, scale,
+#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, sweep, timelapse,
+#                      scale,
 #                      speed, radiance, knowledge, photographs (also of --real DIR), frames-registration,
 #                      reconstruction (with colmap; also DIR/reconstruction), real (pano.pto and hugin.pto below DIR,
 #                      and folders of DIR/brackets)

@@ -54,7 +54,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "packed.h", "profile.h", "reason.h", "sensor.h"}
-FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "rendering.h", "trial.h"}
+FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "deflicker.h", "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
@@ -95,10 +95,10 @@ LAYERS = {
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
-                "sampling", "flat", "fields", "rendering", "trial", "api"],
+                "sampling", "flat", "fields", "deflicker", "rendering", "trial", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "correct", "folder", "api"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "correct", "deflicker", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
@@ -127,6 +127,7 @@ PUBLIC = {
     "exposure_settings.h": CORE_API,
     "fit.h": FIT_API,
     "flat.h": FIT_API,
+    "deflicker.h": CORE_API,
     "fields.h": CORE_API,
     "rendering.h": CORE_API,
     "exposures.h": CORE_API,

@@ -18,7 +18,7 @@ std::string offset_file(const std::string &frame, OffsetFormat format, const std
 
 // Text of the settings: those in `existing` (the text of a file; empty: none) with this offset. An offset that an
 // earlier run has added is replaced, one that the user has set is kept below it. Failure (unreadable) with `file` for a
-// text that is no such file.
+// text of another kind.
 std::string xmp_with_offset(const std::string &existing, double offset_ev, const std::string &file);
 std::string pp3_with_offset(const std::string &existing, double offset_ev, const std::string &file);
 
