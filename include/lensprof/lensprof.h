@@ -22,6 +22,7 @@
 #include "geometry.h"
 #include "hugin.h"
 #include "model.h"
+#include "online.h"
 #include "packed.h"
 #include "profile.h"
 #include "reason.h"

@@ -54,7 +54,8 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "packed.h", "profile.h", "reason.h", "sensor.h"}
-FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "deflicker.h", "rendering.h", "trial.h"}
+FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "deflicker.h", "online.h",
+                      "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
@@ -95,7 +96,7 @@ LAYERS = {
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
-                "sampling", "flat", "fields", "deflicker", "rendering", "trial", "api"],
+                "sampling", "flat", "fields", "deflicker", "rendering", "trial", "online", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "correct", "deflicker", "folder", "api"],
@@ -130,6 +131,7 @@ PUBLIC = {
     "deflicker.h": CORE_API,
     "fields.h": CORE_API,
     "rendering.h": CORE_API,
+    "online.h": CORE_API,
     "exposures.h": CORE_API,
     "trial.h": FIT_API,
     "hugin.h": FIT_API,
