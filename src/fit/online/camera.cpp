@@ -10,6 +10,23 @@ namespace online {
 namespace {
 
 constexpr double kLeastFalloff = 1e-3, kLeastLight = 1e-9;
+constexpr double kReach = 1.15;  // from the light to those of the difference that gives its second derivative
+
+double by_log_at(const double *table, double x) {
+    double slope;
+    lp_curve_eval(table, std::min(x, 1.0 - 1e-9), &slope);
+    return slope * x;
+}
+
+// Differences over a range, because f is piecewise linear.
+void fill_bend(Camera &camera) {
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
+        const double x = std::max(j, 1) / static_cast<double>(LP_CURVE_LAST);
+        const double high = std::min(x * kReach, 1.0), low = x / kReach;
+        camera.bend[j] =
+            static_cast<float>((by_log_at(camera.table, high) - by_log_at(camera.table, low)) / std::log(high / low));
+    }
+}
 
 // f with these modes; the ends stay 0 and 1.
 void fill_table(const Globals &globals, const Camera &camera, double *table) {
@@ -26,13 +43,16 @@ Prediction predict(const Camera &camera, double log_light) {
     const double x = std::exp(std::min(log_light, 0.0));
     double slope;
     const double value = lp_curve_eval(camera.table, x, &slope);
-    return {value, slope * x, x * LP_CURVE_LAST};
+    const double place = x * LP_CURVE_LAST;
+    return {value, slope * x, place, static_cast<double>(camera.bend[static_cast<int>(place)])};
 }
 
 double log_light_of(const Camera &camera, double value, Prediction *at) {
     double inverse_slope;
     const double x = std::max(lp_curve_invert(camera.table, value, &inverse_slope), kLeastLight);
-    *at = {value, inverse_slope > 0.0 ? x / inverse_slope : 0.0, x * LP_CURVE_LAST};
+    const double place = x * LP_CURVE_LAST;
+    *at = {value, inverse_slope > 0.0 ? x / inverse_slope : 0.0, place,
+           static_cast<double>(camera.bend[static_cast<int>(place)])};
     return std::log(x);
 }
 
@@ -45,6 +65,7 @@ double log_falloff_of(const Camera &camera, double r2) {
 void set_globals(const Globals &globals, Camera &camera) {
     camera.globals = globals;
     fill_table(globals, camera, camera.table);
+    fill_bend(camera);
 }
 
 bool is_possible(const Globals &globals, const Camera &camera) {

@@ -11,6 +11,7 @@ struct Prediction {
     double value;   // f
     double by_log;  // df / d ln x; 0 where f is flat
     double place;   // x on the table, 0..1023
+    double bend;    // second derivative by ln x
 };
 
 // f at exp(log_light).

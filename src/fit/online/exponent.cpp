@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLeastKnownSigma = 0.02;  // EV, as fit/prior/gauge.hpp
 constexpr double kLargestLogGamma = 2.3;
+constexpr uint32_t kLongestStretch = 256;  // known exposures that have one offset: drift of the chain counts as another
 constexpr int kGammaSteps = 20;
 enum {
     kOne,
@@ -28,15 +29,16 @@ void add_known(double ev, double sigma, double a, const Globals &slope, Exponent
     Eigen::Matrix<double, kMoments, 1> row;
     row << 1.0, ev, a / kLn2, slope / kLn2;
     const double error = std::max(sigma, kLeastKnownSigma);
+    if (exponent.chain_count >= kLongestStretch) end_chain(exponent);
     exponent.chain += row * row.transpose() / (error * error);
-    exponent.known += 1.0;
+    exponent.known += 1.0, exponent.chain_count++;
 }
 
 void end_chain(Exponent &exponent) {
     if (!(exponent.chain(kOne, kOne) > 0.0)) return;
     exponent.earlier += about_mean(exponent.chain);
     exponent.chain.setZero();
-    exponent.chains += 1.0;
+    exponent.chains += 1.0, exponent.chain_count = 0;
 }
 
 void follow(const Globals &step, Exponent &exponent) {

@@ -65,8 +65,12 @@ bool keep_frame(const Memory &memory, const lensprof_online_frame &frame) {
     state.since_key++;
     if (state.key_count == state.keyframes || !is_new(memory, frame)) return false;
     Keyframe &key = memory.keyframes()[state.key_count];
-    key.first = state.sighting_count;
-    for (uint32_t c = 0; c < state.channels; c++) key.log_exposure[c] = memory.exposed(state.last, c).log_exposure;
+    key.added = state.added, key.chain = state.chains, key.first = state.sighting_count;
+    key.known_ev = frame.known_ev, key.known_sigma = frame.known_ev_sigma;
+    for (uint32_t c = 0; c < state.channels; c++) {
+        const Exposed &exposed = memory.exposed(state.last, c);
+        key.log_exposure[c] = key.found[c] = exposed.log_exposure, key.found_slope[c] = exposed.slope;
+    }
     state.kept_keyframes++;
     for (uint32_t i = 0; i < frame.count; i++)
         if (memory.seen()[i].usable && !memory.seen()[i].outlier)

@@ -10,6 +10,7 @@
 #include "fit/online/camera.hpp"
 #include "fit/online/exponent.hpp"
 #include "fit/online/keyframe.hpp"
+#include "fit/online/replay.hpp"
 #include "fit/online/window.hpp"
 
 namespace lensprof {
@@ -58,7 +59,11 @@ void follow_all(const Memory &memory, const Globals &step) {
             exposed.log_exposure += exposed.slope.dot(step), exposed.log_step += exposed.step_slope.dot(step);
         }
     }
+    for (uint32_t k = 0; k < state.key_count; k++)
+        for (uint32_t c = 0; c < state.channels; c++)
+            memory.keyframes()[k].found[c] += memory.keyframes()[k].found_slope[c].dot(step);
     follow(step, state.exponent);
+    state.has_moved = 1;
 }
 
 // Standard errors by the scatter of the tracks' pulls (sandwich): those of one track may have a common error.
@@ -101,6 +106,7 @@ void take_step(const Memory &memory) {
     if (is_converged) {
         set_covariance(memory, pin, window);
         state.is_still = 1;
+        if (state.windows == 0 && state.has_moved) replay_window(memory);
         if (is_full(memory)) drop_window(memory, window);
         return;
     }

@@ -154,6 +154,7 @@ Layout layout_of(const lensprof_online_options &options) {
     layout.frame = place(options.history * sizeof(Frame));
     layout.sighting = place(layout.sightings * sizeof(Sighting));
     layout.window_track = place(layout.window_tracks * sizeof(WindowTrack));
+    layout.window_light = place(channels * layout.window_tracks * sizeof(Light));
     layout.keyframe = place(options.keyframes * sizeof(Keyframe));
     layout.seen = place(options.tracks * sizeof(Seen));
     layout.values = place(layout.sightings * sizeof(double));

@@ -39,6 +39,7 @@ struct Camera {
     double table[LENSPROF_RESPONSE_SAMPLES];            // f
     double first[LENSPROF_RESPONSE_SAMPLES];            // f without its modes
     float mode[LENSPROF_RESPONSE_SAMPLES + 1][kModes];  // h of the modes in use, else 0; the last row twice
+    float bend[LENSPROF_RESPONSE_SAMPLES];              // second derivative of f by ln x
     int32_t modes;
     int32_t reserved;
 };
@@ -79,8 +80,13 @@ struct Frame {
 };
 
 struct Keyframe {
+    uint64_t added;  // its ordinal among all frames, from 1
+    uint64_t chain;  // and that of its chain
+    double known_ev, known_sigma;
     double log_exposure[3];
-    uint32_t first, count;  // its observations in the window
+    double found[3];         // as add() found it, which follows the globals,
+    Globals found_slope[3];  // with its slope
+    uint32_t first, count;   // its observations in the window
 };
 
 // An observation of a keyframe.
@@ -106,12 +112,15 @@ struct Exponent {
     double position;         // q of the response at gamma 1 here
     Moments chain, earlier;  // of this chain; of earlier ones, about the mean of each
     double known;            // number of known exposures
-    double chains;           // chains that have known exposures, without this one
+    double chains;           // earlier chains, or stretches of them, that have known exposures
+    uint32_t chain_count;    // known exposures of this one
+    uint32_t reserved;
 };
 
 struct Layout {
-    uint32_t live, table, window_tracks, sightings;                                                    // capacities
-    size_t track, light, slot, exposed, frame, sighting, window_track, keyframe, seen, values, bytes;  // offsets
+    uint32_t live, table, window_tracks, sightings;  // capacities
+    size_t track, light, slot, exposed, frame, sighting, window_track, window_light, keyframe, seen, values,
+        bytes;  // offsets
 };
 
 struct State {
@@ -135,7 +144,7 @@ struct State {
     uint32_t since_key;  // frames
     uint32_t steps;      // of the fit since the window changed
     uint32_t is_still;   // whether another step would change nothing
-    uint32_t wants_keyframe;
+    uint32_t has_moved;  // whether the globals did since the first window was replayed
     uint32_t unused;
 };
 
@@ -146,6 +155,7 @@ struct Seen {
     double log_falloff;
     uint32_t place;  // in slots(), of one that is unknown
     uint32_t usable, outlier;
+    float value[3], weight;
     uint32_t reserved;
 };
 
@@ -164,6 +174,9 @@ public:
     Frame &frame(int32_t frame) const { return at<Frame>(layout().frame)[frame]; }
     Sighting *sightings() const { return at<Sighting>(layout().sighting); }
     WindowTrack *window_tracks() const { return at<WindowTrack>(layout().window_track); }
+    Light *window_lights(uint32_t channel) const {  // while the window is replayed
+        return at<Light>(layout().window_light) + size_t{channel} * layout().window_tracks;
+    }
     Keyframe *keyframes() const { return at<Keyframe>(layout().keyframe); }
     Seen *seen() const { return at<Seen>(layout().seen); }
     double *values() const {
