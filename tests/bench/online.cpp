@@ -44,7 +44,8 @@ void draw_response(Video &dice, Case &c) {
         if (lensprof_response_set_gamma(&c.response, gamma) != LENSPROF_OK) std::abort();
     } else {
         lensprof_response typical;
-        if (lensprof_response_set_typical(&typical, LENSPROF_CAMERA_STILL, nullptr, nullptr) != LENSPROF_OK) std::abort();
+        if (lensprof_response_set_typical(&typical, LENSPROF_CAMERA_STILL, nullptr, nullptr) != LENSPROF_OK)
+            std::abort();
         double emor[LENSPROF_EMOR_MODES];
         do {
             std::memcpy(emor, typical.emor, sizeof emor);
@@ -100,15 +101,21 @@ void run(const Case &c, Coverages &all, bool prints) {
     const lensprof_online_result r = online.result();
     const double gamma = exponent_of(c.response);
     all.ratio.add(online.exposure.ev - (video.ev() - first), online.exposure.ev_sigma);
-    (c.plan.known_sigma > 0.0 || c.kind == LENSPROF_CAMERA_LINEAR ? all.corner_known : all.corner).add(r.corner - c.plan.corner, r.corner_sigma);
+    (c.plan.known_sigma > 0.0 || c.kind == LENSPROF_CAMERA_LINEAR ? all.corner_known : all.corner)
+        .add(r.corner - c.plan.corner, r.corner_sigma);
     all.corner_given.add(std::log(r.corner) * gamma / r.gamma - std::log(c.plan.corner), r.falloff_sigma);
-    if (c.plan.known_sigma > 0.0 && c.kind != LENSPROF_CAMERA_LINEAR) all.gamma.add(std::log(r.gamma / gamma), r.log_gamma_sigma);
+    if (c.plan.known_sigma > 0.0 && c.kind != LENSPROF_CAMERA_LINEAR)
+        all.gamma.add(std::log(r.gamma / gamma), r.log_gamma_sigma);
     if (prints)
-        std::printf("motion %d corner %.2f gamma %.2f tracks %u noise %.1f out %.2f known %.2f lost %.3f speed %.1f kind %u | corner %.3f (%.3f) z %+.1f | given %+.4f (%.4f) z %+.1f | gamma %.2f (%.3f) z %+.1f | ev %+.3f (%.3f) z %+.1f\n",
-                    static_cast<int>(c.plan.motion), c.plan.corner, gamma, c.plan.tracks, c.plan.noise_levels, c.plan.outliers, c.plan.known_sigma, c.plan.lost, c.plan.speed, c.kind, r.corner, r.corner_sigma,
-                    (r.corner - c.plan.corner) / r.corner_sigma, std::log(r.corner) * gamma / r.gamma - std::log(c.plan.corner), r.falloff_sigma,
-                    (std::log(r.corner) * gamma / r.gamma - std::log(c.plan.corner)) / r.falloff_sigma, r.gamma, r.log_gamma_sigma, std::log(r.gamma / gamma) / std::max(r.log_gamma_sigma, 1e-9),
-                    online.exposure.ev - (video.ev() - first), online.exposure.ev_sigma, (online.exposure.ev - (video.ev() - first)) / online.exposure.ev_sigma);
+        std::printf(
+            "motion %d corner %.2f gamma %.2f tracks %u noise %.1f out %.2f known %.2f lost %.3f speed %.1f kind %u | corner %.3f (%.3f) z %+.1f | given %+.4f (%.4f) z %+.1f | gamma %.2f (%.3f) z %+.1f | ev %+.3f (%.3f) z %+.1f\n",
+            static_cast<int>(c.plan.motion), c.plan.corner, gamma, c.plan.tracks, c.plan.noise_levels, c.plan.outliers,
+            c.plan.known_sigma, c.plan.lost, c.plan.speed, c.kind, r.corner, r.corner_sigma,
+            (r.corner - c.plan.corner) / r.corner_sigma, std::log(r.corner) * gamma / r.gamma - std::log(c.plan.corner),
+            r.falloff_sigma, (std::log(r.corner) * gamma / r.gamma - std::log(c.plan.corner)) / r.falloff_sigma,
+            r.gamma, r.log_gamma_sigma, std::log(r.gamma / gamma) / std::max(r.log_gamma_sigma, 1e-9),
+            online.exposure.ev - (video.ev() - first), online.exposure.ev_sigma,
+            (online.exposure.ev - (video.ev() - first)) / online.exposure.ev_sigma);
 }
 
 // Seconds of processor time.
@@ -132,10 +139,11 @@ void measure_cost() {
         add += b - a, solve += c - b, longest = std::max(longest, c - a);
     }
     const lensprof_online_options options = options_for(plan);
-    std::printf("500 tracks, 640 x 480: with the simulation, add %.3f ms, solve %.3f ms per frame, at most %.1f ms; %.1f %% of a core at 30 frames/s; "
-                "%zu bytes\n",
-                1e3 * add / frames, 1e3 * solve / frames, 1e3 * longest, 3e3 * (add + solve) / frames,
-                lensprof_online_bytes(&options));
+    std::printf(
+        "500 tracks, 640 x 480: with the simulation, add %.3f ms, solve %.3f ms per frame, at most %.1f ms; %.1f %% of a core at 30 frames/s; "
+        "%zu bytes\n",
+        1e3 * add / frames, 1e3 * solve / frames, 1e3 * longest, 3e3 * (add + solve) / frames,
+        lensprof_online_bytes(&options));
 }
 
 // The exposure of frame 2000 relative to frame 0.
@@ -151,7 +159,8 @@ void measure_drift(uint32_t runs) {
             drift.add(all.ratio.errors[0], 0.0);
         }
         std::sort(drift.errors.begin(), drift.errors.end());
-        std::printf("| %s | %u | %.4f | %.4f |\n", names[m], runs, drift.errors[runs / 2], drift.errors[runs * 95 / 100]);
+        std::printf("| %s | %u | %.4f | %.4f |\n", names[m], runs, drift.errors[runs / 2],
+                    drift.errors[runs * 95 / 100]);
     }
 }
 

@@ -9,17 +9,22 @@
 
 #include <lensprof/online.h>
 
-enum class Motion { pan, handheld, forward, still };
+enum class Motion {
+    pan,
+    handheld,
+    forward,
+    still
+};
 
 struct VideoPlan {
     uint64_t seed = 1;
     uint32_t width = 640, height = 480, channels = 1;
     uint32_t tracks = 300;
     Motion motion = Motion::pan;
-    double speed = 6.0;      // px per frame; handheld: the size of a sway
-    double lost = 0.01;      // share of tracks that the tracker loses per frame
-    double corner = 0.6;     // M in the corner
-    double ev_range = 1.0;   // of the automatic exposure, either side; 0: constant
+    double speed = 6.0;     // px per frame; handheld: the size of a sway
+    double lost = 0.01;     // share of tracks that the tracker loses per frame
+    double corner = 0.6;    // M in the corner
+    double ev_range = 1.0;  // of the automatic exposure, either side; 0: constant
     double noise_levels = 2.0;
     double outliers = 0.1;   // share of observations that show something else
     double known_sigma = 0;  // of known exposures, EV; 0: none
@@ -27,7 +32,8 @@ struct VideoPlan {
 
 class Video {
 public:
-    Video(const VideoPlan &plan, const lensprof_response &response) : plan_(plan), response_(response), state_(plan.seed) {
+    Video(const VideoPlan &plan, const lensprof_response &response)
+        : plan_(plan), response_(response), state_(plan.seed) {
         const double loss = 1.0 - plan.corner, bend = 0.4 * random() - 0.2;  // of the profile of the falloff
         falloff_ = {{-loss * (1.0 - bend), -loss * bend, 0.0}, {0.0, 0.0}};
         for (uint32_t i = 0; i < plan.tracks; i++) points_.push_back(appear(false));
@@ -64,8 +70,11 @@ private:
 
     Point appear(bool at_edge) {
         Point p{next_id_++, random() * plan_.width - 0.5, random() * plan_.height - 0.5, {}, false};
-        if (at_edge && plan_.motion == Motion::pan) p.x = velocity_[0] > 0.0 ? random() * plan_.speed : plan_.width - 1.0 - random() * plan_.speed;
-        if (at_edge && plan_.motion == Motion::forward) p.x = 0.5 * plan_.width + 0.5 * (p.x - 0.5 * plan_.width), p.y = 0.5 * plan_.height + 0.5 * (p.y - 0.5 * plan_.height);
+        if (at_edge && plan_.motion == Motion::pan)
+            p.x = velocity_[0] > 0.0 ? random() * plan_.speed : plan_.width - 1.0 - random() * plan_.speed;
+        if (at_edge && plan_.motion == Motion::forward)
+            p.x = 0.5 * plan_.width + 0.5 * (p.x - 0.5 * plan_.width),
+            p.y = 0.5 * plan_.height + 0.5 * (p.y - 0.5 * plan_.height);
         const double base = std::exp(-3.5 * random());
         for (double &l : p.radiance) l = base * (plan_.channels == 3 ? std::exp(0.5 * (random() - 0.5)) : 1.0);
         return p;
@@ -101,7 +110,8 @@ private:
         const double light = lensprof_vignetting_eval(&falloff_, r2, nullptr) * std::exp2(ev_);
         for (uint32_t c = 0; c < plan_.channels; c++) {
             const double l = p.is_wrong ? std::exp(-3.5 * random()) : p.radiance[c];
-            const double b = lensprof_response_eval(&response_, l * light * balance_[c], nullptr) + plan_.noise_levels / 255.0 * normal();
+            const double b = lensprof_response_eval(&response_, l * light * balance_[c], nullptr)
+                             + plan_.noise_levels / 255.0 * normal();
             o.value[c] = static_cast<float>(std::round(std::clamp(b, 0.0, 1.0) * 1020.0) / 1020.0);  // a mean of pixels
         }
         seen_.push_back(o);
@@ -119,8 +129,7 @@ private:
 // A camera that runs, in memory of its own.
 class OnlineRun {
 public:
-    explicit OnlineRun(const lensprof_online_options &options)
-        : memory_(lensprof_online_bytes(&options) / 8 + 1) {
+    explicit OnlineRun(const lensprof_online_options &options) : memory_(lensprof_online_bytes(&options) / 8 + 1) {
         status = lensprof_online_begin(memory_.data(), memory_.size() * 8, &options, &online, nullptr);
         lensprof_online_exposure_init(&exposure);
         lensprof_online_frame_init(&frame);

@@ -14,6 +14,10 @@ namespace lensprof {
 namespace online {
 namespace {
 
+// A frame's error e enters the radiances of its new tracks, whose mean error R enters later exposures and with them
+// later tracks: R = its mean over the ages of the tracks + e. The mean age is half of a life, so that an error persists
+// with twice the share that is renewed per frame: four times the variance.
+constexpr double kRenewal = 4.0;
 constexpr uint32_t kStrikes = 3;  // frames in a row, then the track shows something else
 
 Exposing exposing(const Memory &memory, uint32_t count, uint32_t channel) {
@@ -97,7 +101,7 @@ void extend_chain(const Memory &memory, const lensprof_online_frame &frame, uint
     now.step = fit.own + std::max(before->own, fit.tracks);
     now.step_slope = fit.slope - before->slope, now.log_step = fit.a - before->log_exposure;
     const double share = all > 0.0 ? born / all : 0.0;
-    state.chain[channel] += share * share * fit.own;
+    state.chain[channel] += kRenewal * share * share * fit.own;
 }
 
 void begin_chain(const Memory &memory, const lensprof_online_frame &frame) {
@@ -157,7 +161,7 @@ void add_frame(const Memory &memory, const lensprof_online_frame &frame) {
     const uint32_t usable = usable_count(memory, frame.count);
     record.unusable = frame.count - usable;
     ChannelFit fits[3];
-    for (uint32_t c = 0; c < state.channels; c++) state.chain[c] += lost_variance(memory, c);
+    for (uint32_t c = 0; c < state.channels; c++) state.chain[c] += kRenewal * lost_variance(memory, c);
     if (state.before != kNone && find_exposures(memory, frame, fits)) {
         record.state = LENSPROF_ONLINE_CHAINED;
         record.since = memory.frame(state.before).since, record.before = memory.frame(state.before).number;
