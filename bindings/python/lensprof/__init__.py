@@ -8,7 +8,7 @@ from . import formats
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FIELDS_IMAGES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE,
                    MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, DeflickerState, DeflickerTo, Direction,
                    DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Flip, Free, GammaFrom,
-                   ItemKind, Layout, LinkState, Loss, Method, Pack, Packing, Processing, ProfilePrior, Projection, Reason,
+                   ItemKind, Layout, LinkState, Loss, Method, OnlineKnown, OnlineState, Pack, Packing, Processing, ProfilePrior, Projection, Reason,
                    ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
                    TrialCorners, TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
@@ -28,6 +28,7 @@ from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .folder import calibrate_folder
 from .geometry import Camera
 from .model import Exposure, GainGrid, ImageCircle, Levels, Response, Vignetting, emor_table, half_diagonal
+from .online import Online, OnlineExposure, OnlineOptions, OnlineResult
 from .packed import pack_rows, unpack_rows
 from .pictures import Picture, PictureMetadata, encode_picture, read_picture, write_picture
 from .profile import CameraModel, Profile, ProfileKey, Provenance
@@ -50,7 +51,8 @@ __all__ = [
     "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
     "FlatOptions", "FlatResult", "Flip", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "ImageCircle", "Item",
     "ItemKind", "KNOWN_EXPOSURE_DTYPE", "LINK_DTYPE", "Layout", "Levels", "LinkState", "Lookup", "LookupOptions", "Loss",
-    "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Packing", "Picture",
+    "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "Online", "OnlineExposure", "OnlineKnown",
+    "OnlineOptions", "OnlineResult", "OnlineState", "PAIR_DTYPE", "Pack", "Packing", "Picture",
     "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress", "Projection",
     "Provenance", "RESPONSE_SAMPLES", "Readout", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
     "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",

@@ -35,6 +35,10 @@ COVERAGE_BINS = 10
 FIT_REFERENCE = 4294967295
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
+ONLINE_TRACKS = 8192
+ONLINE_KEYFRAMES = 24
+ONLINE_MODES = 8
+ONLINE_HISTORY = 65536
 RENDERING_SHOTS = 16
 RENDERING_SIDE = 256
 RENDERING_RAW_SIDE = 64
@@ -442,6 +446,20 @@ class Holds(IntEnum):
     PROFILES = 0
     RESPONSE = 1
     FALLOFF = 2
+
+
+class OnlineState(IntEnum):
+    """lensprof_online_state; see lensprof/online.h."""
+    FIRST = 0
+    CHAINED = 1
+    LOST = 2
+
+
+class OnlineKnown(IntEnum):
+    """lensprof_online_known; see lensprof/online.h."""
+    EXPONENT = 1
+    SHAPE = 2
+    FALLOFF = 4
 
 
 class Packing(IntEnum):
@@ -1414,6 +1432,91 @@ class ExportOptions(Structure):
     ]
 
 
+class OnlineOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("channels", c_uint32),
+        ("camera_kind", c_uint32),
+        ("tracks", c_uint32),
+        ("keyframes", c_uint32),
+        ("modes", c_uint32),
+        ("history", c_uint32),
+        ("reserved", c_uint32),
+        ("center", c_double * 2),
+        ("black", c_double),
+        ("white", c_double),
+        ("profile", POINTER(Profile)),
+    ]
+
+
+class OnlineObservation(Structure):
+    _fields_ = [
+        ("track", c_uint64),
+        ("x", c_float),
+        ("y", c_float),
+        ("value", c_float * 3),
+        ("weight", c_float),
+    ]
+
+
+class OnlineFrame(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_uint32),
+        ("number", c_uint64),
+        ("known_ev", c_double),
+        ("known_ev_sigma", c_double),
+        ("observations", POINTER(OnlineObservation)),
+    ]
+
+
+class OnlineExposure(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("state", c_uint32),
+        ("number", c_uint64),
+        ("since", c_uint64),
+        ("before", c_uint64),
+        ("ev", c_double),
+        ("ev_sigma", c_double),
+        ("step_ev", c_double),
+        ("step_sigma", c_double),
+        ("white_balance", c_double * 3),
+        ("tracks", c_uint32),
+        ("outliers", c_uint32),
+        ("unusable", c_uint32),
+        ("keyframe", c_uint32),
+    ]
+
+
+class OnlineResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("known", c_uint32),
+        ("frames", c_uint64),
+        ("lost", c_uint64),
+        ("chains", c_uint64),
+        ("keyframes", c_uint64),
+        ("observations", c_uint64),
+        ("windows", c_uint64),
+        ("gamma", c_double),
+        ("log_gamma_sigma", c_double),
+        ("shape_sigma", c_double),
+        ("corner", c_double),
+        ("corner_sigma", c_double),
+        ("falloff_sigma", c_double),
+        ("noise_levels", c_double),
+        ("known_ev_scatter", c_double),
+        ("inlier_share", c_double),
+    ]
+
+
+class Online(Structure):
+    """Opaque."""
+
+
 class PackedImage(Structure):
     _fields_ = [
         ("data", c_void_p),
@@ -1910,6 +2013,8 @@ ENUMS = {
     "LENSPROF_DNG_": DngForm,
     "LENSPROF_FORMAT_": Format,
     "LENSPROF_HOLDS_": Holds,
+    "LENSPROF_ONLINE_": OnlineState,
+    "LENSPROF_ONLINE_KNOWS_": OnlineKnown,
     "LENSPROF_PACKING_": Packing,
     "LENSPROF_FLIP_": Flip,
     "LENSPROF_STORE_": StoreMode,
@@ -1978,6 +2083,11 @@ STRUCTS = {
     "lensprof_format_info": FormatInfo,
     "lensprof_import_options": ImportOptions,
     "lensprof_export_options": ExportOptions,
+    "lensprof_online_options": OnlineOptions,
+    "lensprof_online_observation": OnlineObservation,
+    "lensprof_online_frame": OnlineFrame,
+    "lensprof_online_exposure": OnlineExposure,
+    "lensprof_online_result": OnlineResult,
     "lensprof_packed_image": PackedImage,
     "lensprof_packed_target": PackedTarget,
     "lensprof_rendering_shot": RenderingShot,
@@ -2019,6 +2129,7 @@ OPAQUE = {
     "lensprof_fixed_plan": FixedPlan,
     "lensprof_flat": Flat,
     "lensprof_pto": Pto,
+    "lensprof_online": Online,
     "lensprof_rendering": Rendering,
     "lensprof_sensor_plan": SensorPlan,
     "lensprof_sensor_flat": SensorFlat,
@@ -2071,6 +2182,10 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     PtoImage: ("lensprof_init_sized", [PtoImage]),
     ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
+    OnlineOptions: ("lensprof_online_options_init_sized", [OnlineOptions]),
+    OnlineFrame: ("lensprof_online_frame_init_sized", [OnlineFrame]),
+    OnlineExposure: ("lensprof_online_exposure_init_sized", [OnlineExposure]),
+    OnlineResult: ("lensprof_online_result_init_sized", [OnlineResult]),
     RenderingShot: ("lensprof_init_sized", [RenderingShot]),
     RenderingResult: ("lensprof_init_sized", [RenderingResult]),
     Readout: ("lensprof_readout_init_sized", [Readout]),
@@ -2294,6 +2409,20 @@ FUNCTIONS = {
     "lensprof_export_options_init_sized": (None, [POINTER(ExportOptions), c_size_t]),
     "lensprof_export": (c_int, [POINTER(POINTER(Profile)), c_uint32, POINTER(ExportOptions), c_void_p, c_size_t,
                                 POINTER(c_size_t), POINTER(ErrorText)]),
+    # online.h
+    "lensprof_online_options_init_sized": (None, [POINTER(OnlineOptions), c_size_t]),
+    "lensprof_online_frame_init_sized": (None, [POINTER(OnlineFrame), c_size_t]),
+    "lensprof_online_exposure_init_sized": (None, [POINTER(OnlineExposure), c_size_t]),
+    "lensprof_online_result_init_sized": (None, [POINTER(OnlineResult), c_size_t]),
+    "lensprof_online_bytes": (c_size_t, [POINTER(OnlineOptions)]),
+    "lensprof_online_begin": (c_int, [c_void_p, c_size_t, POINTER(OnlineOptions), POINTER(POINTER(Online)),
+                                      POINTER(ErrorText)]),
+    "lensprof_online_add": (c_int, [POINTER(Online), POINTER(OnlineFrame), POINTER(OnlineExposure),
+                                    POINTER(ErrorText)]),
+    "lensprof_online_solve": (c_int, [POINTER(Online), c_uint32, POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_online_exposure_at": (c_int, [POINTER(Online), c_uint64, POINTER(OnlineExposure), POINTER(ErrorText)]),
+    "lensprof_online_get": (c_int, [POINTER(Online), POINTER(OnlineResult), POINTER(ErrorText)]),
+    "lensprof_online_profile": (c_int, [POINTER(Online), POINTER(Profile), POINTER(ErrorText)]),
     # packed.h
     "lensprof_packed_row_bytes": (c_size_t, [c_uint32, c_uint32]),
     "lensprof_unpack_row": (c_int, [c_uint32, POINTER(c_uint8), c_uint32, POINTER(c_uint16)]),

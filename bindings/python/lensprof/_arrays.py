@@ -56,6 +56,9 @@ FLAT_QUALITY_DTYPE = _dtype(_abi.FlatImageQuality)
 FLAT_SPOT_DTYPE = _dtype(_abi.FlatSpot)
 """Layout of a spot of dust: x, y, radius (px), depth, shots."""
 
+ONLINE_OBSERVATION_DTYPE = _dtype(_abi.OnlineObservation)
+"""Layout of what a tracker sees of one point: track, x, y (px), value[3] (grey values 0..1), weight."""
+
 FIELDS_IMAGE_DTYPE = _dtype(_abi.FieldsImage)
 """Layout of what one picture gave to a fit of fields; see lensprof/fields.h."""
 

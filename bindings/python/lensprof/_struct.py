@@ -27,7 +27,8 @@ T = TypeVar("T")
 default: Any = object()
 """The library's default, of a field that is a plain number."""
 
-_LIMITS: dict[type, tuple[int, int]] = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_int64: (-2**63, 2**63 - 1)}
+_LIMITS: dict[type, tuple[int, int]] = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_uint64: (0, 2**64 - 1),
+                                       ctypes.c_int64: (-2**63, 2**63 - 1)}
 
 
 def integer(value: Any, what: str, kind: type = ctypes.c_uint32) -> int:
