@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -84,6 +84,9 @@ bench-fields: build ## measure one shading of many pictures compared with BaSiC 
 	test -x build/basicpy/bin/python || python3 -m venv build/basicpy
 	build/basicpy/bin/pip install -q basicpy==2.0.0 scipy
 	LENSPROF_LIBRARY=build/liblensprof.so PYTHONPATH=bindings/python build/basicpy/bin/python -B tests/bench/fields.py
+
+bench-online: build ## measure the fit of a camera that runs: cost per frame, coverage of its errors, drift, the batch fit
+	@tests/bench/online.sh
 
 install: deps ## install under PREFIX (default /usr/local), with the database of `make profiles` where that was made
 	cmake --preset release -DLENSPROF_TESTS=OFF >/dev/null
