@@ -105,7 +105,8 @@ private:
     double noise_;
 };
 
-bool is_seen_twice(const WindowTrack &track) { return track.count > 1; }
+// Two observations do not show which of them is wrong.
+bool is_checkable(const WindowTrack &track) { return track.count > 2; }
 
 }  // namespace
 
@@ -122,7 +123,7 @@ void Window::weigh() {
     size_t count = 0;
     const State &state = memory_.state();
     for (uint32_t t = 0; t < state.window_count; t++) {
-        if (!is_seen_twice(memory_.window_tracks()[t])) continue;
+        if (!is_checkable(memory_.window_tracks()[t])) continue;
         TrackView view(memory_, t, 0, noise_);
         view.find_radiance();
         const size_t first = count;
@@ -144,7 +145,7 @@ void Window::add_channel(uint32_t channel) {
     sums.mixed = MixedMatrix::Zero(keyframes_, kGlobals), sums.pull = Exposures::Zero(keyframes_);
     sums.globals.setZero(), sums.global_pull.setZero();
     for (uint32_t t = 0; t < memory_.state().window_count; t++) {
-        if (!is_seen_twice(memory_.window_tracks()[t])) continue;
+        if (!is_checkable(memory_.window_tracks()[t])) continue;
         TrackView view(memory_, t, channel, noise_);
         view.find_radiance();
         TrackEquations track(keyframes_);
@@ -176,7 +177,7 @@ GlobalMatrix Window::scatter() const {
     for (uint32_t c = 0; c < memory_.state().channels; c++) {
         const MixedMatrix follow = channels_[c].exposures * channels_[c].mixed;
         for (uint32_t t = 0; t < memory_.state().window_count; t++) {
-            if (!is_seen_twice(memory_.window_tracks()[t])) continue;
+            if (!is_checkable(memory_.window_tracks()[t])) continue;
             TrackEquations track(keyframes_);
             TrackView(memory_, t, c, noise_).equations(track);
             if (!(track.radiance > 0.0)) continue;
