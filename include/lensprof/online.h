@@ -165,8 +165,8 @@ LENSPROF_API size_t lensprof_online_bytes(const lensprof_online_options *options
 
 /* Begins in memory[size] (8-byte aligned, owned by the caller, must outlive *online). Errors: ARGUMENT for NULL,
  * unaligned memory, unknown kinds and options out of range; SIZE for an empty frame; CAPACITY for too little memory;
- * NOT_FINITE; STRUCT_SIZE; those of lensprof_profile_validate for the profile; RESPONSE for a profile with three
- * different responses. */
+ * NOT_FINITE; STRUCT_SIZE; those of lensprof_profile_validate for the profile; RESPONSE for a profile with a
+ * response per channel. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_online_begin(void *memory, size_t size,
                                                                      const lensprof_online_options *options,
                                                                      lensprof_online **online, lensprof_error *error);
@@ -181,10 +181,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_online_add(lensprof_onli
                                                                    lensprof_error *error);
 
 /* Takes up to `steps` steps of the fit of the window; one step takes time in proportion to the observations of the
- * window, about 0.3 microseconds each. *pending (may be NULL) receives whether another step would change anything: 0 if
- * there is nothing to do, e.g. before the second keyframe. Exposures kept so far follow the new response and falloff.
- * If nobody calls this function, add goes on with the first response and keeps no keyframes beyond a window. One step
- * per frame is enough. Errors: ARGUMENT for NULL. */
+ * window, at most about 1.5 microseconds each. *pending (may be NULL) receives whether another step would change
+ * anything: 0 if there is nothing to do, e.g. before the second keyframe. Exposures kept so far follow the new response
+ * and falloff. If nobody calls this function, add goes on with the first response and keeps no keyframes beyond a
+ * window. One step per frame is enough. Errors: ARGUMENT for NULL. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_online_solve(lensprof_online *online, uint32_t steps,
                                                                      uint32_t *pending, lensprof_error *error);
 

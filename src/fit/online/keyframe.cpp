@@ -86,7 +86,6 @@ bool keep_frame(const Memory &memory, const lensprof_online_frame &frame) {
 void clear_window(const Memory &memory) {
     State &state = memory.state();
     state.key_count = state.window_count = state.sighting_count = 0;
-    state.window_precision.setZero();
     state.steps = 0, state.is_still = 1;
     for (uint32_t t = 0; t < state.live; t++) memory.tracks()[t].window = kNone;
 }

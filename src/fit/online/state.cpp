@@ -169,7 +169,7 @@ void begin(const lensprof_online_options &options, State &state) {
     state.tracks = options.tracks, state.keyframes = options.keyframes, state.history = options.history;
     state.black = options.black, state.white = options.white;
     state.layout = layout_of(options);
-    state.prior.precision.setZero(), state.prior.weighted.setZero(), state.window_precision.setZero();
+    state.prior.precision.setZero(), state.prior.weighted.setZero();
     state.exponent.chain.setZero(), state.exponent.earlier.setZero();
     state.noise = kFirstNoise;
     state.last = state.before = kNone;

@@ -131,7 +131,7 @@ struct State {
     Camera camera;
     Knowledge prior;       // of what was dropped, and of what was known to begin with
     GlobalMatrix scatter;  // of the scores of its tracks, plus the first precision
-    GlobalMatrix window_precision, covariance;
+    GlobalMatrix covariance;
     Exponent exponent;
     uint64_t added, lost, chains, kept_keyframes, kept_observations, windows;
     uint64_t checks;
