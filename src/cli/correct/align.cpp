@@ -17,8 +17,10 @@
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
 #include "photo/calibration/profile_store.hpp"
+#include "photo/calibration/still_fit.hpp"
 #include "photo/correct/correction.hpp"
 #include "photo/correct/merged.hpp"
+#include "photo/deflicker/long_sequence.hpp"
 #include "photo/pictures/clipping.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"
@@ -110,7 +112,28 @@ std::vector<uint32_t> frames_of(const Options &o, const Scene &scene) {
     return frames;
 }
 
-Fitted fit_sequence(const Options &o, const Scene &scene, std::vector<double> &white_shares, Progress &progress) {
+// A sequence, and the share of each of its pictures that is white.
+struct FittedSequence {
+    Fitted fitted;
+    std::vector<std::string> names;    // of the pictures that findings name
+    std::vector<double> white_shares;  // per picture
+};
+
+FittedSequence fit_still_sequence(const Options &o, const Scene &scene, Progress &progress) {
+    if (scene.files.size() > long_sequence_frames) {
+        LongSequence found = fit_long_sequence(scene.files, o.fit, o.pixels, progress);
+        return {std::move(found.fitted), std::move(found.names), std::move(found.white_shares)};
+    }
+    std::vector<SamplePicture> pictures;
+    FittedSequence found{fit_still(scene, o.fit, o.pixels, progress, &pictures), scene.names, {}};
+    for (const SamplePicture &picture : pictures) found.white_shares.push_back(white_share(picture.picture));
+    return found;
+}
+
+FittedSequence fit_sequence(const Options &o, const Scene &scene, Progress &progress) {
+    if (!scene.document) return fit_still_sequence(o, scene, progress);
+    FittedSequence found;
+    found.names = scene.names;
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= scene.images[0].free;
@@ -122,17 +145,16 @@ Fitted fit_sequence(const Options &o, const Scene &scene, std::vector<double> &w
     sampling.pairs = o.pixels.pairs;
     sampling.seed = o.pixels.seed;
     std::vector<lensprof_link> links;
-    input.pairs = scene.document ? sample_pairs(scene, pictures, sampling, {}, progress, &links)
-                                 : sample_still(scene, pictures, sampling, 0.0, progress);
+    input.pairs = sample_pairs(scene, pictures, sampling, {}, progress, &links);
     input.options.links = links.data();
     input.options.link_count = static_cast<uint32_t>(links.size());
-    input.options.refine = !scene.document && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(scene);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : scene.files) metadata.push_back(read_metadata(file));
     add_known_exposures(o.fit, scene, metadata, input.images, progress);
-    for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
-    return fit(input, scene.reference, o.pto.empty() ? scene.files[0] : o.pto, progress, nullptr);
+    for (const SamplePicture &picture : pictures) found.white_shares.push_back(white_share(picture.picture));
+    found.fitted = fit(input, scene.reference, o.pto, progress, nullptr);
+    return found;
 }
 
 lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_exposure> &exposures) {
@@ -242,13 +264,14 @@ int align(const Options &o, Streams &streams) {
     Scene scene = sequence(o);
     std::vector<uint32_t> frames = frames_of(o, scene);
     std::vector<Correction> jobs = make_jobs(o, scene, frames);
-    check_pictures(scene, o.pixels.max_side);
+    if (scene.document || scene.files.size() <= long_sequence_frames) check_pictures(scene, o.pixels.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams, o.progress);
-    std::vector<double> white_shares;  // number of the project's pictures
-    Fitted fitted = fit_sequence(o, scene, white_shares, progress);
+    const FittedSequence found = fit_sequence(o, scene, progress);
+    const Fitted &fitted = found.fitted;
+    const std::vector<double> &white_shares = found.white_shares;
     Verdict verdict = fitted.verdict;
-    name_images(scene.names, verdict);
+    name_images(found.names, verdict);
     std::vector<lensprof_exposure> exposures;
     leave_out_unjoined(fitted, scene, frames, jobs, streams);
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);

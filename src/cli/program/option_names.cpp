@@ -91,9 +91,10 @@ std::string advice_for(const std::string &situation) {
         {"prior_given", ", or --fit stored=none to fit the pictures alone"},
         {"several_cards", ". If they show different scenes, use `lensprof flat --fields`"},
         {"still_camera",
-         "; use `lensprof bracket` for its response, `lensprof align` to match or merge the pictures. "
+         "; use `lensprof bracket` for its response, `lensprof align` to match or merge the pictures, `lensprof "
+         "deflicker` to level a timelapse. "
          "Both need plain exposures, without HDR"},
-        {"still_group", "; use `lensprof bracket` or `lensprof align` for it"},
+        {"still_group", "; use `lensprof bracket`, `lensprof align` or `lensprof deflicker` for it"},
     };
     const auto found = advice.find(situation);
     return found == advice.end() ? std::string() : found->second;

@@ -7,11 +7,9 @@
 #include "photo/base/databases.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
-#include "photo/calibration/fit.hpp"
-#include "photo/calibration/known_exposures.hpp"
+#include "photo/calibration/still_fit.hpp"
 #include "photo/calibration/stored_prior.hpp"
 #include "photo/pictures/picture.hpp"
-#include "photo/scene/sampling.hpp"
 #include "photo/scene/static_camera.hpp"
 
 namespace lensprof {
@@ -187,37 +185,13 @@ double tone_error_of(const MeasureOptions &o, const Candidate &candidate, const 
 // A response fitted to frames whose exposures are spread evenly.
 std::optional<Candidate> fitted_candidate(const FrameSequence &sequence,
                                           const std::vector<lensprof_deflicker_frame> &measured, Events &events) {
-    std::vector<size_t> order;
-    for (size_t i = 0; i < measured.size(); i++)
-        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i].segment == 0) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](size_t a, size_t b) { return measured[a].exposure.ev < measured[b].exposure.ev; });
-    std::vector<std::string> files;
-    const size_t count = std::min(order.size(), kFittedFrames);
-    if (count < 2) return std::nullopt;
-    std::vector<PictureMetadata> metadata;
-    for (size_t n = 0; n < count; n++) {
-        const Frame &frame = sequence.frames[order[n * (order.size() - 1) / (count - 1)]];
-        files.push_back(frame.file), metadata.push_back(frame.metadata);
-    }
     try {
+        const std::vector<std::string> files = frames_of_all_exposures(sequence, measured, kFittedFrames);
         Scene scene = static_scene(files, true);
         scene.reference = 0;
-        FitInput input;
-        input.options = fit_options({});
-        input.options.free &= scene.images[0].free;
-        input.options.reference = scene.reference;
-        std::vector<SamplePicture> pictures = read_pictures(scene, SamplingOptions().max_side, events);
-        input.options.channels = channel_count(pictures);
-        lensprof_sample_options sampling;
-        lensprof_sample_options_init(&sampling);
-        input.pairs = sample_still(scene, pictures, sampling, 0.0, events);
-        input.options.refine = 1;
-        input.images = fit_images(scene);
-        add_known_exposures({}, scene, metadata, input.images, events);
-        const Fitted fitted = fit(input, scene.reference, files[0], events, nullptr);
+        const Fitted fitted = fit_still(scene, {}, {}, events);
         if (!fitted.corrects()) return std::nullopt;
-        return Candidate{{fitted.result.response}, "response fitted to " + counted(count, "frame")};
+        return Candidate{{fitted.result.response}, "response fitted to " + counted(files.size(), "frame")};
     } catch (const Failure &failure) {
         if (!is_of_input(failure)) throw;
         return std::nullopt;
@@ -264,6 +238,20 @@ void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_c
 }
 
 }  // namespace
+
+std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
+                                                 const std::vector<lensprof_deflicker_frame> &measured, size_t most) {
+    std::vector<size_t> order;
+    for (size_t i = 0; i < measured.size(); i++)
+        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i].segment == 0) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return measured[a].exposure.ev < measured[b].exposure.ev; });
+    const size_t count = std::min(order.size(), most);
+    std::vector<std::string> files;
+    for (size_t n = 0; n < count; n++)
+        files.push_back(sequence.frames[order[count > 1 ? n * (order.size() - 1) / (count - 1) : 0]].file);
+    return files;
+}
 
 std::vector<lensprof_exposure> MeasuredSequence::curve(const lensprof_deflicker_target &target, double &window) const {
     std::vector<lensprof_exposure> wanted(frames.size());

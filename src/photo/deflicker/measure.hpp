@@ -35,6 +35,10 @@ struct MeasuredSequence {
     std::vector<lensprof_exposure> curve(const lensprof_deflicker_target &target, double &window) const;
 };
 
+// Files of up to `most` frames of the first segment whose exposures are spread evenly over its range.
+std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
+                                                 const std::vector<lensprof_deflicker_frame> &measured, size_t most);
+
 // Measures all frames; those that cannot be read are left out of the sequence. The response is the given one, linear
 // for raw and linear frames, else the first of these that the ratios of dark and bright tones agree with: that of a
 // stored profile of the camera, sRGB, and one fitted to frames of different exposures. Failure (not usable) for a
