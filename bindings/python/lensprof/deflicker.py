@@ -67,7 +67,7 @@ class Deflickered(Handle):
         wanted, used, error = (_abi.Exposure * len(self.frames))(), c_double(), _abi.ErrorText()
         check(lib.lensprof_deflicker_curve(self._pointer, byref(target), wanted, len(wanted), byref(used), byref(error)),
               "no curve", error)
-        self.wanted, self.window = np.frombuffer(wanted, dtype=_arrays.EXPOSURE_DTYPE).copy(), used.value
+        self.wanted, self.window = np.frombuffer(bytes(wanted), dtype=_arrays.EXPOSURE_DTYPE).copy(), used.value
 
     def shading(self, index: int) -> GainGrid:
         """What else differs between this frame and the others: flicker of lines, falloff of its aperture."""

@@ -44,7 +44,7 @@ struct Correction {
     std::shared_ptr<const lensprof_levels> levels;      // of the samples, instead of the model's; NULL: those
     std::vector<CropCorrection> crops;                  // what is corrected; the rest is only encoded. Empty = all
     bool keeps_falloff = false;  // the grid of the model is not the lens's: the mark does not state a correction of it
-    bool copies_dng = false;  // the target is a copy of the source with the falloff as an opcode, pixels unchanged
+    bool copies_dng = false;     // the target is a copy of the source with the falloff as an opcode, pixels unchanged
 };
 
 struct CorrectionKind {

@@ -43,12 +43,12 @@ using Match = std::pair<int, int>;
 // another. For descriptors of length 1 the product is 1 - distance^2 / 2.
 std::vector<Match> match(const Features &first, const Features &second, Effort effort) {
     std::vector<Match> found;
+    if (first.descriptors.rows < 2 || second.descriptors.rows < 2) return found;
     const auto used = [&](const cv::Mat &descriptors) {
         return descriptors.rowRange(
             0, effort == Effort::quick ? std::min(descriptors.rows, quick_features) : descriptors.rows);
     };
     const cv::Mat a = used(first.descriptors), b = used(second.descriptors);
-    if (a.rows < 2 || b.rows < 2) return found;
     const std::vector<NearestFeatures> nearest = nearest_features(a.ptr<int16_t>(), a.rows, b.ptr<int16_t>(), b.rows);
     constexpr double one = unit_length * unit_length;
     std::vector<int> taken(static_cast<size_t>(b.rows), -1);
