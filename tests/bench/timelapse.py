@@ -54,6 +54,7 @@ def make(case, seed, folder):
     y, x = np.mgrid[0:h, 0:w].astype(float)
     r2 = ((x - (w - 1) / 2) ** 2 + (y - (h - 1) / 2) ** 2) / ((w * w + h * h) / 4)
     ground = 0.17 * np.exp(0.45 * texture(random, c["size"], 3.0))
+    colours = np.dstack([np.exp(0.15 * texture(random, c["size"], 6.0))[4:4 + h, 4:4 + w] for _ in range(3)])
     light = np.linspace(0, c["dusk"], n)
     settings = np.round(-light * 3) / 3
     ev = settings + random.normal(0, c["flicker"], n)
@@ -75,7 +76,7 @@ def make(case, seed, folder):
             scene = np.where((abs(x - at) < 0.02 * w) & (abs(y - 0.75 * h) < 0.09 * h), 0.02 + 0.3 * (p % 2), scene)
         scene = scene * (1 - 0.4 * r2) * 2.0 ** (ev[i] + light[i])
         tint = np.array([1 - c["colour"] * np.sin(1.1 * i), 1, 1 + c["colour"] * np.sin(1.7 * i)])
-        e = scene[..., None] * tint
+        e = scene[..., None] * colours * tint
         e = e + random.normal(size=e.shape) * np.sqrt(np.maximum(e, 0) / c["noise"] + 1e-7)
         value = c["encode"](e)
         name = str(folder / ("f%05d.%s" % (i, c["format"])))

@@ -48,6 +48,14 @@ class Deflicker(unittest.TestCase):
                 means.append(np.log2((linear(out / full) if full > 1 else out).mean()))
             self.assertLess(np.abs(np.diff(means)).max(), 0.01 if dtype == np.uint8 else 0.004)
 
+    def test_blue_first(self):
+        tinted = [np.dstack([f[..., 0], f[..., 1], (f[..., 2] * 0.8).astype(np.uint8)]) for f in frames(EVS[:4])]
+        given = lp.deflicker(tinted)
+        reversed_ = lp.deflicker([np.ascontiguousarray(f[..., ::-1]) for f in tinted], layout=lp.Layout.BGR)
+        self.assertEqual(given.frames.tobytes(), reversed_.frames.tobytes())
+        out = reversed_.level(2, np.ascontiguousarray(tinted[2][..., ::-1]))
+        self.assertTrue((out[..., ::-1] == given.level(2, tinted[2])).all())
+
     def test_targets(self):
         levels = lp.deflicker(frames(EVS), times=np.arange(16) * 5.0, settings_ev=np.arange(16) / 3, to="light", window=40)
         self.assertEqual(levels.window, 40)

@@ -8,7 +8,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import DeflickerTo, SampleType
+from ._abi import DeflickerTo, Layout, SampleType
 from ._library import Handle, check, initialised, lib
 from ._struct import Flag, Struct, default
 from ._types import Pixels, Records
@@ -47,6 +47,7 @@ class Deflickered(Handle):
     wanted: Records
     window: float
     _response: "tuple[Response, ...]"
+    _layout: Optional[Layout]
 
     def target(self, to: Union[str, int, DeflickerTo, Sequence[float]] = "smooth", window: float = 0.0) -> None:
         """Changes `wanted`. to: "smooth", "light" (needs settings_ev), "mean", the index of a frame, or an EV per frame;
@@ -78,7 +79,7 @@ class Deflickered(Handle):
     def level(self, index: int, frame: Pixels, out: Optional[Pixels] = None) -> Pixels:
         """Frame `index` at its wanted exposure: `frame` is its array, at any size. out: as in Plan.apply. 8 bit frames are
         dithered, because flicker of half a level is visible in smooth areas."""
-        view = _arrays.image(frame)
+        view = _arrays.image(frame, self._layout)
         is_float = view.sample not in (SampleType.U8, SampleType.U16)
         response = self._response or (Response.linear() if is_float else Response.srgb(),)
         options = ApplyOptions(frame_width=view.width, frame_height=view.height, source_sample=SampleType(view.sample),
@@ -99,14 +100,14 @@ def deflicker(frames: Iterable[Pixels], *, times: Optional[Iterable[float]] = No
               settings_ev: Optional[Iterable[float]] = None, f_numbers: Optional[Iterable[float]] = None,
               response: Union[Response, Iterable[Response], None] = None,
               to: Union[str, int, DeflickerTo, Sequence[float]] = "smooth", window: float = 0.0, rows: bool = False,
-              region: Sequence[float] = (0.0, 0.0, 0.0, 0.0)) -> Deflickered:
+              region: Sequence[float] = (0.0, 0.0, 0.0, 0.0), layout: Optional[Layout] = None) -> Deflickered:
     """Measures the exposures of the frames of a stationary camera, and the curve that levels them.
 
     frames: arrays (height, width) or (height, width, 3) of uint8, uint16 or float32, in order; they are read one after
     the other, and not kept. times: s, one per frame. settings_ev: exposures by the settings of the camera (settings_ev),
     for to="light". f_numbers: apertures, whose falloffs are then compared. response: None = sRGB for integers, linear for
-    floats; else one or three. rows: level lines, too. region: left, top, right, bottom as shares of the frame. to, window:
-    as in Deflickered.target.
+    floats; else one or three. rows: level lines, too. region: left, top, right, bottom as shares of the frame. layout:
+    Layout.BGR for frames of OpenCV; None = by the shape. to, window: as in Deflickered.target.
     """
     given = () if response is None else (response,) if isinstance(response, Response) else tuple(response)
     options: Any = initialised(_abi.DeflickerOptions, rows=int(rows))
@@ -117,7 +118,7 @@ def deflicker(frames: Iterable[Pixels], *, times: Optional[Iterable[float]] = No
     error, pointer = _abi.ErrorText(), POINTER(_abi.Deflicker)()
     check(lib.lensprof_deflicker_create(byref(options), byref(pointer), byref(error)), "invalid options", error)
     made = Deflickered(pointer, lib.lensprof_deflicker_destroy)
-    made._response = given
+    made._response, made._layout = given, layout
     known = [None if values is None else iter(values) for values in (times, settings_ev, f_numbers)]
     count = 0
     for count, frame in enumerate(frames, 1):
@@ -128,7 +129,7 @@ def deflicker(frames: Iterable[Pixels], *, times: Optional[Iterable[float]] = No
                 if value is None:
                     raise ValueError(f"{name}: fewer values than frames; give one for each")
                 setattr(facts, name, float(value))
-        check(lib.lensprof_deflicker_add(pointer, byref(_arrays.image(frame)), byref(facts), byref(error)),
+        check(lib.lensprof_deflicker_add(pointer, byref(_arrays.image(frame, layout)), byref(facts), byref(error)),
               f"frame {count - 1}", error)
     made.result = DeflickerResult()
     check(lib.lensprof_deflicker_measure(pointer, byref(made.result), byref(error)), "no exposures", error)
