@@ -179,7 +179,8 @@ double tone_error_of(const MeasureOptions &o, const Candidate &candidate, const 
     const Deflicker deflicker = new_deflicker(o, candidate, frames[0]->metadata.size);
     const std::vector<const Frame *> all = pointers_to(untimed);
     Reading(o, all, events).run(*deflicker, false);
-    return result_of(*deflicker, frames[0]->file).tone_error;
+    const lensprof_deflicker_result result = result_of(*deflicker, frames[0]->file);
+    return result.tone_error > 0.0 ? result.tone_error + result.unlinked : 1.0;  // frames do not even agree
 }
 
 // A response fitted to frames whose exposures are spread evenly.
@@ -238,6 +239,36 @@ void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_c
 }
 
 }  // namespace
+
+bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
+    constexpr double kStillShift = 0.002, kStillAgreeing = 0.3;  // share of the longer side; share of the cells
+    if (frames.size() < kFirstFrames) return false;
+    std::vector<Frame> spread;
+    for (size_t n = 0; n < kFirstFrames; n++) {
+        const Frame &frame = frames[n * (frames.size() - 1) / (kFirstFrames - 1)];
+        spread.push_back({frame.file, frame.metadata});
+    }
+    lensprof_response srgb;
+    lensprof_response_set_srgb(&srgb);
+    const MeasureOptions options;
+    const Deflicker deflicker = new_deflicker(options, {{srgb}, ""}, spread[0].metadata.size);
+    const std::vector<const Frame *> all = pointers_to(spread);
+    Reading reading(options, all, events);
+    reading.run(*deflicker, false);
+    events.clear();
+    const auto &reasons = reading.reasons();
+    if (std::any_of(reasons.begin(), reasons.end(), [](const std::string &reason) { return !reason.empty(); }))
+        return false;
+    lensprof_deflicker_result result;
+    lensprof_deflicker_result_init(&result);
+    if (lensprof_deflicker_measure(deflicker.get(), &result, nullptr) != LENSPROF_OK || result.levelled < kFirstFrames
+        || result.segments != 1)
+        return false;
+    const auto measured = frames_of(*deflicker, kFirstFrames);
+    return std::all_of(measured.begin() + 1, measured.end(), [](const lensprof_deflicker_frame &frame) {
+        return std::hypot(frame.shift[0], frame.shift[1]) < kStillShift && frame.agreeing > kStillAgreeing;
+    });
+}
 
 std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
                                                  const std::vector<lensprof_deflicker_frame> &measured, size_t most) {

@@ -35,6 +35,9 @@ struct MeasuredSequence {
     std::vector<lensprof_exposure> curve(const lensprof_deflicker_target &target, double &window) const;
 };
 
+// Whether a dozen of these frames, spread over all, show one scene from a camera that did not move; false for fewer.
+bool shows_still_camera(const std::vector<Frame> &frames, Events &events);
+
 // Files of up to `most` frames of the first segment whose exposures are spread evenly over its range.
 std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
                                                  const std::vector<lensprof_deflicker_frame> &measured, size_t most);

@@ -9,10 +9,12 @@
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/deflicker/measure.hpp"
 #include "photo/folder/ledger.hpp"
 #include "photo/folder/sheet.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/registration/registration.hpp"
+#include "photo/scene/photographs.hpp"
 
 namespace lensprof {
 namespace {
@@ -74,6 +76,13 @@ Json summary_json(const FolderOptions &o, const Inputs &inputs, const Panoramas 
     return json;
 }
 
+// A tripod is named before the pictures are registered, which takes long.
+void note_still_camera(const Inputs &inputs, Events &events) {
+    std::vector<Frame> frames;
+    for (const InputPicture &picture : inputs.pictures) frames.push_back({picture.file, picture.metadata});
+    if (shows_still_camera(frames, events)) events.note("", inputs.label + still_camera_reason());
+}
+
 }  // namespace
 
 std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPictures &pictures) {
@@ -90,6 +99,7 @@ FolderResult calibrate_folder(const FolderOptions &o, Events &events) {
     FolderResult result;
     result.inputs = find_inputs(o.inputs, o.output, events);
     const Inputs &inputs = result.inputs;
+    note_still_camera(inputs, events);
     if (has_ledger(o.output)) remove_stale_temporaries(o.output);
     Ledger ledger(o.output, o.overwrite);
     check_existing_files(o, inputs, ledger);
