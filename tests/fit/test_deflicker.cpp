@@ -370,6 +370,9 @@ void test_order_of_calls_and_bad_input(void **) {
     assert_ok(lensprof_deflicker_add(d, &view, &facts, &error));
     assert_ok(lensprof_deflicker_measure(d, nullptr, &error));
     assert_int_equal(lensprof_deflicker_frame_at(d, 2, &at, &error), LENSPROF_ERROR_ARGUMENT);
+    view.sample = LENSPROF_SAMPLE_F16;
+    assert_int_equal(lensprof_deflicker_add(d, &view, &facts, &error), LENSPROF_ERROR_UNSUPPORTED);
+    view = frame.view();
     assert_int_equal(lensprof_deflicker_curve(d, nullptr, wanted, 3, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     assert_ok(lensprof_deflicker_curve(d, nullptr, wanted, 2, nullptr, &error));
     lensprof_deflicker_target target = target_to(LENSPROF_TO_LIGHT);
@@ -389,6 +392,23 @@ void test_order_of_calls_and_bad_input(void **) {
     lensprof_deflicker_destroy(nullptr);
 }
 
+// Times that repeat, and large ones: whole seconds of a burst, seconds since 1970, thousands of equal times.
+void test_times(void **) {
+    for (const int rate : {0, 1, 5})
+        for (const size_t count : {size_t(40), size_t(3200)}) {
+            std::vector<double> times, values;
+            uint64_t random = 8;
+            for (size_t i = 0; i < count; i++) {
+                times.push_back(1.7e9 + (rate ? std::floor(double(i) / rate) : 0.0));
+                values.push_back(0.05 * lp_normal(&random));
+            }
+            const double window = lensprof::best_window(times, values);
+            const auto curve = lensprof::smooth_curve(times, values, window);
+            for (size_t i = 0; i < count; i++) assert_true(std::abs(curve[i]) < 0.06);
+            if (rate) assert_true(window >= 7.0);
+        }
+}
+
 // One pixel, one row, and all samples at the ends: no crash, and no exposure where there is no information.
 void test_small_frames(void **) {
     for (const uint32_t width : {1u, 2u, 3u, 97u})
@@ -398,11 +418,15 @@ void test_small_frames(void **) {
                 const std::vector<uint8_t> pixels(size_t(width) * height, value);
                 const lensprof_image view = {pixels.data(), ptrdiff_t(width),   width,
                                              height,        LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
-                for (int i = 0; i < 6; i++) assert_ok(lensprof_deflicker_add(deflicker.get(), &view, nullptr, nullptr));
+                const bool is_enough = width * height >= 24;
+                for (int i = 0; i < 6; i++)
+                    assert_int_equal(lensprof_deflicker_add(deflicker.get(), &view, nullptr, nullptr),
+                                     is_enough ? LENSPROF_OK : LENSPROF_ERROR_SIZE);
                 lensprof_deflicker_result result;
                 lensprof_deflicker_result_init(&result);
                 const lensprof_status status = lensprof_deflicker_measure(deflicker.get(), &result, nullptr);
-                assert_int_equal(status, value == 128 ? LENSPROF_OK : LENSPROF_ERROR_NO_SAMPLES);
+                assert_int_equal(status, value == 128 && is_enough ? LENSPROF_OK : LENSPROF_ERROR_NO_SAMPLES);
+                if (status == LENSPROF_OK) assert_int_equal(result.levelled, 6);
             }
 }
 
@@ -422,6 +446,7 @@ int main() {
         cmocka_unit_test(test_flicker_of_lines),
         cmocka_unit_test(test_curves),
         cmocka_unit_test(test_order_of_calls_and_bad_input),
+        cmocka_unit_test(test_times),
         cmocka_unit_test(test_small_frames),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -68,7 +68,7 @@ class Deflicker(unittest.TestCase):
         self.assertTrue(np.allclose(levels.wanted["ev"], levels.frames["exposure"]["ev"].mean()))
         with self.assertRaises(ValueError):
             levels.target([1.0, 2.0])
-        with self.assertRaises(KeyError):
+        with self.assertRaises(ValueError):
             levels.target("brighter")
 
     def test_apertures_and_lines(self):
@@ -97,6 +97,12 @@ class Deflicker(unittest.TestCase):
             lp.deflicker(frames(EVS), region=(0.5, 0, 0.2, 1))
         with self.assertRaises(ValueError):
             lp.deflicker(frames(EVS), times=[1.0, 2.0])
+        with self.assertRaises(ValueError):
+            lp.deflicker(frames(EVS), times=range(99))
+        with refused(self, lp.Status.ERROR_UNSUPPORTED):
+            lp.deflicker([np.full((40, 60), 0.3, np.float16)] * 3)
+        with refused(self, lp.Status.ERROR_SIZE):
+            lp.deflicker([np.full((4, 4), 90, np.uint8)] * 3)
 
 
 if __name__ == "__main__":

@@ -55,6 +55,8 @@ class Deflickered(Handle):
         target: Any = initialised(_abi.DeflickerTarget, window_s=window)
         curve: Any = None
         if isinstance(to, str):
+            if to.upper() not in DeflickerTo.__members__ or to.upper() in ("FRAME", "CURVE"):
+                raise ValueError(f'to: {to!r} is neither "smooth", "light", "mean", the index of a frame nor a list')
             target.to = DeflickerTo[to.upper()]
         elif isinstance(to, DeflickerTo):
             target.to = to
@@ -131,6 +133,9 @@ def deflicker(frames: Iterable[Pixels], *, times: Optional[Iterable[float]] = No
                 setattr(facts, name, float(value))
         check(lib.lensprof_deflicker_add(pointer, byref(_arrays.image(frame, layout)), byref(facts), byref(error)),
               f"frame {count - 1}", error)
+    for name, values in zip(("times", "settings_ev", "f_numbers"), known):
+        if values is not None and next(values, None) is not None:
+            raise ValueError(f"{name}: more values than frames; give one for each")
     made.result = DeflickerResult()
     check(lib.lensprof_deflicker_measure(pointer, byref(made.result), byref(error)), "no exposures", error)
     made.frames = np.zeros(count, dtype=_arrays.DEFLICKER_FRAME_DTYPE)

@@ -116,11 +116,13 @@ class Online:
             raise TypeError(f"tracks are {ids.dtype} of shape {ids.shape}; give one integer per track")
         seen = np.zeros(len(ids), dtype=_arrays.ONLINE_OBSERVATION_DTYPE)
         seen["track"] = ids
-        places = np.asarray(xy, dtype=np.float32).reshape(-1, 2)
-        grey = np.asarray(values, dtype=np.float32)
-        if len(places) != len(ids) or grey.size != len(ids) * self._channels:
-            raise ValueError(f"{len(ids)} tracks, {len(places)} positions and values of shape {grey.shape}: give (n), "
-                             f"(n, 2) and (n, {self._channels})")
+        places, grey = np.asarray(xy, dtype=np.float32), np.asarray(values, dtype=np.float32)
+        shapes = [(len(ids), self._channels)] + [(len(ids),)] * (self._channels == 1)
+        if places.size == 0:
+            places = places.reshape(-1, 2)
+        if places.shape != (len(ids), 2) or (grey.shape not in shapes and len(ids)):
+            raise ValueError(f"{len(ids)} tracks, positions of shape {places.shape} and values of shape {grey.shape}: give "
+                             f"(n), (n, 2) and (n, {self._channels})")
         seen["x"], seen["y"] = places[:, 0], places[:, 1]
         seen["value"][:, :self._channels] = grey.reshape(len(ids), self._channels)
         seen["weight"] = weights

@@ -73,7 +73,7 @@ void declare(Command &command, DeflickerOptions &o) {
     command.word(
         "--to", "smooth|mean|first|FRAME|FILE.csv", [&o](const std::string &word) { o.to = word; },
         "exposure of the frames: a smooth curve through their own (smooth, default), their mean, that of the first or of "
-        "a frame, or the values of a table (a number or `file,ev` per line, EV)");
+        "a frame, or the values of a table (a number or `file,ev` per line, EV relative to the first frame as it is)");
     command.flag(
         "--keep-light", o.keep_light,
         "remove the steps of the camera that EXIF states, and keep the light: dusk becomes dark. Default where "
@@ -197,8 +197,8 @@ void name_frames(const Levels &levels, const Is &is_one, const std::string &what
     warns ? warn(streams, text) : note(streams, text);
 }
 
-void report_frames(const Levels &levels, Streams &streams) {
-    constexpr double clipped = 0.01, darker_ev = -0.1, brighter_ev = 3.0;
+void report_frames(const Levels &levels, bool writes_xmp, Streams &streams) {
+    constexpr double clipped = 0.01, darker_ev = -0.1, brighter_ev = 3.0, xmp_ev = 5.0;
     const auto has_state = [](uint32_t state) {
         return [state](const LevelledFrame &frame) { return frame.measured.state == state; };
     };
@@ -223,6 +223,9 @@ void report_frames(const Levels &levels, Streams &streams) {
     name_frames(
         levels, [&](const LevelledFrame &f) { return f.measured.white_share > clipped && f.change_ev() < darker_ev; },
         "clipped highlights become grey, because the frame is darkened", true, streams);
+    name_frames(
+        levels, [&](const LevelledFrame &f) { return writes_xmp && std::abs(f.change_ev()) > xmp_ev; },
+        "changed by more than the 5 EV that Lightroom takes", true, streams);
     name_frames(
         levels, [&](const LevelledFrame &f) { return f.change_ev() > brighter_ev; },
         "more than 3 EV brighter, with the noise of the dark parts", true, streams);
@@ -340,7 +343,8 @@ int run(const DeflickerOptions &o, Streams &streams) {
     for (const Frame &frame : levels.sequence.frames) inputs.push_back(frame.file);
     check_region(measure, levels.sequence.frames[0]);
     if (!o.chart.empty()) check_not_reserved(o.chart, "chart", inputs);
-    if (!o.chart.empty()) check_output_file(o.chart);
+    if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
+    if (is_folder(o.folder())) remove_stale_temporaries(o.folder());
     levels.measured = measure_frames(measure, levels.sequence, progress);
     std::vector<double> curve;
     levels.target = choose_target(o, levels, curve);
@@ -350,9 +354,12 @@ int run(const DeflickerOptions &o, Streams &streams) {
     if (o.writes(Write::copies)) {
         jobs = levelled_copies(levels.frames, levels.measured, o.folder());
         check_targets(jobs, inputs, "");
-        check_older_outputs(jobs, o.kind, true);
+        check_older_outputs(jobs, o.kind, false);
+        std::vector<std::string> copies;
+        for (const Correction &job : jobs) copies.push_back(job.target);
+        if (!o.chart.empty()) check_not_reserved(o.chart, "chart", copies);
     }
-    report_frames(levels, streams);
+    report_frames(levels, o.writes(Write::xmp), streams);
     report_target(levels, streams);
     std::vector<std::string> written;
     write_files(o, levels, jobs, progress, written);

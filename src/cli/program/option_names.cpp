@@ -79,7 +79,9 @@ std::string advice_for(const std::string &situation) {
         {"fixed_balance", " (Er and Eb on the v lines, or --fit free=all)"},
         {"linear_pictures", "; correct such pictures with `lensprof apply --key processing=raw`"},
         {"make_profile", " with `lensprof build`"},
-        {"moving_camera", "; use `lensprof calibrate` on the folder for frames of a moving camera"},
+        {"moving_camera",
+         "; use `lensprof calibrate` on the folder for frames of a moving camera, or give a part that "
+         "stands still with --region"},
         {"name_pictures", "; run `lensprof build` on the pictures with --camera and --lens"},
         {"name_project", "; run `lensprof build` on the project with --camera and --lens"},
         {"no_profile", "; see `lensprof profile list`"},

@@ -59,13 +59,18 @@ lensprof_status check_frame(const lensprof_deflicker &d, const lensprof_image &f
         return fail_at(LENSPROF_ITEM_IMAGE, static_cast<uint32_t>(index), of, error, "%s", text);
     };
     if (status != LENSPROF_OK) return refuse(status, "not a valid view; see lensprof_image_validate");
+    if (frame.sample == LENSPROF_SAMPLE_F16)
+        return refuse(LENSPROF_ERROR_UNSUPPORTED, "samples of 16 bit float are not supported; give U8, U16 or F32");
     if (frame.layout > LENSPROF_LAYOUT_BGRA)
         return refuse(LENSPROF_ERROR_UNSUPPORTED, "planar frames and mosaics are not supported; give grey or RGB");
     if (std::isinf(facts.seconds) || std::abs(facts.settings_ev) > 64.0 || facts.f_number <= 0.0
         || std::isinf(facts.f_number))
         return refuse(LENSPROF_ERROR_ARGUMENT,
                       "seconds, settings_ev (within 64 EV) and f_number (positive) must be finite or NaN");
-    if (index == 0) return LENSPROF_OK;
+    if (index == 0)
+        return FrameGrid(frame, d.options.region).cells() >= kFewestCells
+                   ? LENSPROF_OK
+                   : refuse(LENSPROF_ERROR_SIZE, "too few pixels to compare; at least 24 are needed");
     const FrameGrid &grid = d.chain->grid();
     if (frame.width != grid.width || frame.height != grid.height || frame.sample != d.sample
         || frame.layout != d.layout)
@@ -168,6 +173,7 @@ lensprof_status lensprof_deflicker_add(lensprof_deflicker *deflicker, const lens
             deflicker->sample = frame->sample, deflicker->layout = frame->layout;
         }
         FrameChain &chain = *deflicker->chain;
+        deflicker->measured = 0;  // frames may change what is known of those before
         chain.add(reduce_frame(chain.grid(), *deflicker->tables, *frame), known);
         return LENSPROF_OK;
     });
@@ -178,6 +184,9 @@ lensprof_status lensprof_deflicker_measure(lensprof_deflicker *deflicker, lenspr
     return at_boundary("deflicker", error, [&] {
         clear(error);
         if (!deflicker) return null_deflicker(error);
+        if (result)
+            if (const char *wrong = lp_sized_wrong(result, kFirstDeflickerResult, sizeof *result))
+                return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "deflicker: %s", wrong);
         const lensprof_deflicker_result found =
             deflicker->chain ? summarise((deflicker->chain->solve(), *deflicker->chain)) : lensprof_deflicker_result{};
         if (found.levelled == 0)
@@ -221,12 +230,11 @@ lensprof_status lensprof_deflicker_curve(const lensprof_deflicker *deflicker, co
         if (target)
             if (const char *wrong = lp_sized_take(&wanted, target, kFirstDeflickerTarget))
                 return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "deflicker target: %s", wrong);
+        if (count != deflicker->measured)
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "deflicker: %u exposures are wanted, but %zu frames were measured", count, deflicker->measured);
         status = check_target(*deflicker, wanted, error);
         if (status != LENSPROF_OK) return status;
-        if (count != deflicker->measured || count != deflicker->chain->frames().size())
-            return fail(LENSPROF_ERROR_ARGUMENT, error,
-                        "deflicker: %u exposures are wanted, but %zu frames were added and %zu measured", count,
-                        deflicker->chain->frames().size(), deflicker->measured);
         double used = 0.0;
         const std::vector<lensprof_exposure> found = wanted_exposures(*deflicker->chain, wanted, used);
         std::copy(found.begin(), found.end(), exposures);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr uint32_t kCellsAcross = 96;   // along the longer side
 constexpr float kWhite = 0.97f;         // integer samples at or above it are saturated, or next to what is
+constexpr double kPlateau = 0.002;      // of the float samples at the largest value: it is that of saturation
 constexpr double kLargestWhite = 0.02;  // of the pixels of a cell: more would bias the mean
 constexpr double kDark8 = 6.0 / 255.0;  // mean sample of 8 bit
 constexpr double kDark = 1.0 / 1024.0;  // mean sample of more bits
@@ -41,6 +42,21 @@ struct CellSums {
         std::fill(white.begin(), white.end(), 0);
     }
 };
+
+// The largest sample of a float frame if many have it, because it was clipped there; else infinity.
+float plateau_of(const lensprof_image &frame) {
+    const uint64_t samples = uint64_t(frame.width) * lensprof_layout_samples(frame.layout);
+    float largest = -HUGE_VALF;
+    uint64_t count = 0;
+    for (uint32_t y = 0; y < frame.height; y++)
+        for (uint64_t n = 0; n < samples; n++) {
+            const auto *row = static_cast<const uint8_t *>(frame.data) + static_cast<ptrdiff_t>(y) * frame.row_bytes;
+            const float value = value_of(frame.sample, row, n);
+            if (value > largest && std::isfinite(value)) largest = value, count = 0;
+            count += value == largest;
+        }
+    return static_cast<double>(count) > kPlateau * static_cast<double>(samples * frame.height) ? largest : HUGE_VALF;
+}
 
 // Irradiance smoothed with the weights 1, 2, 1; NaN where a cell of the nine is missing.
 std::vector<float> soften(const FrameGrid &grid, const std::vector<float> &ev) {
@@ -112,7 +128,7 @@ FrameCells reduce_frame(const FrameGrid &grid, const CellTables &tables, const l
     uint64_t white = 0;
     size_t dark_cells = 0, valid = 0;
     const bool is_reversed = frame.layout == LENSPROF_LAYOUT_BGR || frame.layout == LENSPROF_LAYOUT_BGRA;
-    const float limit = frame.sample == LENSPROF_SAMPLE_F32 ? HUGE_VALF : kWhite;
+    const float limit = frame.sample == LENSPROF_SAMPLE_F32 ? plateau_of(frame) : kWhite;
     const auto add_row = [&](const uint8_t *row) {
         for (uint32_t x = 0; x < wide; x++) {
             const uint32_t column = column_of[x];

@@ -142,7 +142,10 @@ bool FrameChain::join(uint32_t frame, const FrameCells &cells) {
     }
     f.agreeing = ratio.agreeing, f.sigma = ratio.sigma;
     f.motion = std::hypot(ratio.shift[0], ratio.shift[1]);
-    if (!ratio.is_valid()) return false;
+    if (!ratio.is_valid()) {
+        f.rows.clear();
+        return false;
+    }
     f.repeats = last.frame + 1 == frame && has_equal_cells(last.cells, cells);
     for (size_t a = 0; a < 2; a++) f.shift[a] = frames_[last.frame].shift[a] + ratio.shift[a];
     links_.push_back({last.frame, frame, 0, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});

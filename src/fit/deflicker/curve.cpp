@@ -24,9 +24,9 @@ Smoothed smooth_once(const std::vector<double> &times, const std::vector<double>
     Smoothed smoothed{std::vector<double>(count), std::vector<double>(count, 1.0)};
     size_t begin = 0;
     for (size_t i = 0; i < count; i++) {
-        while (times[begin] <= times[i] - window) begin++;
+        while (begin < i && times[i] - times[begin] >= window) begin++;
         double w = 0, wt = 0, wtt = 0, wv = 0, wtv = 0;
-        for (size_t n = begin; n < count && times[n] < times[i] + window; n++) {
+        for (size_t n = begin; n < count && times[n] - times[i] < window; n++) {
             const double t = (times[n] - times[i]) / window, tail = 1.0 - std::abs(t * t * t);
             const double weight = trust[n] * tail * tail * tail;
             w += weight, wt += weight * t, wtt += weight * t * t;
@@ -87,13 +87,13 @@ std::vector<double> smooth_curve(const std::vector<double> &times, const std::ve
 }
 
 double best_window(const std::vector<double> &times, const std::vector<double> &values) {
-    if (times.size() < 2) return 1.0;
-    std::vector<double> steps;
-    for (size_t i = 1; i < times.size(); i++) steps.push_back(times[i] - times[i - 1]);
-    const double step = std::max(upper_median(steps), 1e-9), length = times.back() - times.front();
+    const double length = times.empty() ? 0.0 : times.back() - times.front();
+    if (!(length > 0.0)) return 1.0;
+    const double step = length / static_cast<double>(times.size() - 1);
     std::vector<double> windows;
     for (double n = kShortestSteps; n <= kMostSteps && n * step < length; n *= 2.0) windows.push_back(n * step);
-    if (times.size() <= kMostWhole) windows.push_back(1e3 * (length + step));  // nearly constant weights: one line
+    if (times.size() <= kMostWhole || windows.empty())
+        windows.push_back(1e3 * (length + step));  // nearly constant weights: one line
     std::vector<std::vector<double>> errors;
     for (double window : windows) errors.push_back(left_out_errors(times, values, window));
     const auto is_less = [](const auto &a, const auto &b) { return mean_of(a) < mean_of(b); };

@@ -11,7 +11,7 @@ double mean_of(const std::vector<double> &values);
 // point shapes its value. Times never decrease.
 std::vector<double> smooth_curve(const std::vector<double> &times, const std::vector<double> &values, double window);
 
-// The window that best predicts values left out: at least 30 steps of the median length, or all.
+// The window that best predicts values left out: at least 30 steps of the mean length, or all.
 double best_window(const std::vector<double> &times, const std::vector<double> &values);
 
 }  // namespace lensprof

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fit/base/quantile.hpp"
 #include "fit/deflicker/curve.hpp"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kLargestMotion = 0.01;  // share of the longer side per frame that a motion-controlled camera moves
 constexpr double kMostUnlinked = 0.5;    // share of the frames
+constexpr size_t kFewestSmooth = 5;      // frames of a curve; fewer get their mean
 constexpr double kNotBrightened = 0.02;  // share of the frames that TO_LIGHT may brighten, for their flicker
 
 bool is_levelled(const ChainFrame &frame) { return frame.state == LENSPROF_FRAME_LEVELLED; }
@@ -21,19 +23,22 @@ struct SegmentCurve {
     std::vector<double> times, main, red, blue;
 };
 
-SegmentCurve segment_curve(const FrameChain &chain, uint32_t segment) {
-    SegmentCurve curve;
+std::vector<SegmentCurve> segment_curves(const FrameChain &chain) {
+    std::vector<SegmentCurve> curves;
     const auto &frames = chain.frames();
+    const uint32_t main = main_channel(chain.grid());
     for (size_t i = 0; i < frames.size(); i++) {
-        if (!is_levelled(frames[i]) || frames[i].segment != segment) continue;
-        const uint32_t main = main_channel(chain.grid());
+        const ChainFrame &frame = frames[i];
+        if (!is_levelled(frame)) continue;
+        if (frame.segment >= curves.size()) curves.resize(frame.segment + 1);
+        SegmentCurve &curve = curves[frame.segment];
         curve.frames.push_back(i);
-        curve.times.push_back(std::isnan(frames[i].seconds) ? static_cast<double>(i) : frames[i].seconds);
-        curve.main.push_back(frames[i].ev[main]);
-        curve.red.push_back(frames[i].ev[0] - frames[i].ev[main]);
-        curve.blue.push_back(frames[i].ev[2] - frames[i].ev[main]);
+        curve.times.push_back(std::isnan(frame.seconds) ? static_cast<double>(i) : frame.seconds);
+        curve.main.push_back(frame.ev[main]);
+        curve.red.push_back(frame.ev[0] - frame.ev[main]);
+        curve.blue.push_back(frame.ev[2] - frame.ev[main]);
     }
-    return curve;
+    return curves;
 }
 
 void fill_mean(std::vector<double> &values) { std::fill(values.begin(), values.end(), mean_of(values)); }
@@ -44,10 +49,15 @@ void smooth_all(const FrameChain &chain, const lensprof_deflicker_target &target
     const bool is_light = target.to == LENSPROF_TO_LIGHT;
     for (size_t n = 0; is_light && n < curve.frames.size(); n++)
         curve.main[n] -= chain.frames()[curve.frames[n]].settings_ev;
+    if (!(curve.times.back() > curve.times.front()))  // times that say nothing
+        std::iota(curve.times.begin(), curve.times.end(), 0.0);
     const double window = target.window_s > 0.0 ? target.window_s : best_window(curve.times, curve.main);
     longest = std::max(longest, std::min(window, curve.times.back() - curve.times.front()));
     for (std::vector<double> *values : {&curve.main, &curve.red, &curve.blue})
-        *values = smooth_curve(curve.times, *values, window);
+        if (curve.times.size() < kFewestSmooth)
+            fill_mean(*values);
+        else
+            *values = smooth_curve(curve.times, *values, window);
     if (!is_light) return;
     std::vector<double> brightened;
     for (size_t n = 0; n < measured.size(); n++) brightened.push_back(measured[n] - curve.main[n]);
@@ -61,8 +71,7 @@ void set_target(const FrameChain &chain, const lensprof_deflicker_target &target
     case LENSPROF_TO_SMOOTH:
     case LENSPROF_TO_LIGHT: smooth_all(chain, target, longest, curve); return;
     case LENSPROF_TO_CURVE:
-        for (size_t n = 0; n < curve.frames.size(); n++)
-            curve.main[n] = target.curve[curve.frames[n]] - target.curve[curve.frames[0]];
+        for (size_t n = 0; n < curve.frames.size(); n++) curve.main[n] = target.curve[curve.frames[n]];
         fill_mean(curve.red), fill_mean(curve.blue);
         return;
     case LENSPROF_TO_FRAME:
@@ -133,14 +142,9 @@ std::vector<lensprof_exposure> wanted_exposures(const FrameChain &chain, const l
     const uint32_t channels = chain.grid().channels;
     const auto &frames = chain.frames();
     std::vector<lensprof_exposure> wanted;
-    uint32_t segments = 0;
-    for (const ChainFrame &frame : frames) {
-        wanted.push_back(exposure_of(frame, channels));
-        segments = std::max(segments, frame.segment + 1);
-    }
+    for (const ChainFrame &frame : frames) wanted.push_back(exposure_of(frame, channels));
     window = 0.0;
-    for (uint32_t segment = 0; segment < segments; segment++) {
-        SegmentCurve curve = segment_curve(chain, segment);
+    for (SegmentCurve &curve : segment_curves(chain)) {
         if (curve.frames.empty()) continue;
         set_target(chain, target, window, curve);
         for (size_t n = 0; n < curve.frames.size(); n++) {

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kToneTolerance = 0.12;  // share of the ratio by which tones may differ, if the response is wrong
 constexpr double kSameScene = 0.95;      // correlation of the cells of frames of one scene
-constexpr size_t kFewestCells = 24;
 constexpr double kSmallestAgreeing = 0.15, kSmallestCommon = 0.04;  // shares of a ratio that is trusted
 constexpr double kTukey = 3.5;           // standard deviations at which a cell has no influence
 constexpr double kBiweight = 1.1853;     // standard deviation of a normal distribution over that of its weighted values

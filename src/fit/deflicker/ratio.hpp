@@ -36,6 +36,7 @@ float cell_at(const FrameGrid &grid, const std::vector<float> &cells, double col
 // Which channel determines the ratio: green, or grey.
 inline uint32_t main_channel(const FrameGrid &grid) { return grid.channels == 3 ? 1 : 0; }
 
+constexpr size_t kFewestCells = 24;  // of a ratio
 constexpr double kAgreement = 0.06;  // EV, largest residual of a cell that agrees
 
 }  // namespace lensprof

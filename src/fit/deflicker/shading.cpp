@@ -125,9 +125,10 @@ FrameShadings::FrameShadings(const FrameChain &chain) : chain_(chain) {
         std::vector<double> times, values;
         std::vector<size_t> where;
         const auto finish = [&] {
-            if (times.size() < 3) return;
-            const std::vector<double> smooth = smooth_curve(times, values, kRowWindow);
-            for (size_t n = 0; n < where.size(); n++) {
+            const bool is_long = times.size() >= 3;
+            const std::vector<double> smooth =
+                is_long ? smooth_curve(times, values, kRowWindow) : std::vector<double>(times.size());
+            for (size_t n = 0; n < where.size() && is_long; n++) {
                 rows_[where[n]].resize(bands, 0.0f);
                 rows_[where[n]][j] = static_cast<float>(values[n] - smooth[n]);
             }
@@ -135,7 +136,7 @@ FrameShadings::FrameShadings(const FrameChain &chain) : chain_(chain) {
         };
         uint32_t segment = 0;
         for (size_t i = 0; i < frames.size(); i++) {
-            if (frames[i].rows.empty()) continue;
+            if (frames[i].rows.empty() || frames[i].state != LENSPROF_FRAME_LEVELLED) continue;
             if (frames[i].segment != segment) finish();
             segment = frames[i].segment;
             times.push_back(static_cast<double>(i)), values.push_back(static_cast<double>(frames[i].rows[j]));

@@ -11,6 +11,8 @@ namespace lensprof {
 namespace online {
 namespace {
 
+constexpr uint64_t kMostSince = 30;  // frames since the last keyframe that its correction holds for
+
 struct Again {
     double a[3];
     Globals slope[3];
@@ -71,14 +73,23 @@ void correct_frames(const Memory &memory, const Again *again) {
     }
 }
 
-void teach_tracks(const Memory &memory) {
+// Radiances by the window; those of tracks beyond it follow the exposures of the frames that show them.
+void teach_tracks(const Memory &memory, const Again &last) {
     State &state = memory.state();
+    const Keyframe &key = memory.keyframes()[state.key_count - 1];
     for (uint32_t c = 0; c < state.channels; c++)
         for (uint32_t t = 0; t < state.live; t++) {
             Light &light = memory.lights(c)[t];
             const int32_t window = memory.tracks()[t].window;
+            if (window == kNone) {
+                if (light.information > 0.0) {
+                    light.log_radiance -= last.a[c] - key.found[c];
+                    light.slope -= (last.slope[c] - key.found_slope[c]).cast<float>();
+                }
+                continue;
+            }
             const float share = light.share;
-            light = window == kNone ? Light{0.0, 0.0, 0.0f, Slope::Zero()} : memory.window_lights(c)[window];
+            light = memory.window_lights(c)[window];
             light.share = share;
         }
 }
@@ -88,14 +99,15 @@ void teach_tracks(const Memory &memory) {
 void replay_window(const Memory &memory) {
     State &state = memory.state();
     state.has_moved = 0;
-    if (!holds_chain(memory)) return;
+    const uint64_t since = state.added - memory.keyframes()[state.key_count - 1].added;
+    if (!holds_chain(memory) || since > kMostSince) return;
     for (uint32_t c = 0; c < state.channels; c++)
         std::fill_n(memory.window_lights(c), state.window_count, Light{0.0, 0.0, 0.0f, Slope::Zero()});
     Again again[kMostKeyframes];
     for (uint32_t k = 0; k < state.key_count; k++)
         if (!expose_again(memory, k, again[k])) return;
     correct_frames(memory, again);
-    teach_tracks(memory);
+    teach_tracks(memory, again[state.key_count - 1]);
     state.exponent.chain.setZero(), state.exponent.earlier.setZero();
     state.exponent.known = state.exponent.chains = 0.0, state.exponent.chain_count = 0;
     for (uint32_t k = 0; k < state.key_count; k++) {

@@ -39,10 +39,12 @@ LongSequence fit_long_sequence(const std::vector<std::string> &files, const FitO
     MeasureOptions with_response;
     with_response.response = found.fitted.result.response;
     measured = measure_all(with_response, sequence, events);
+    const uint32_t segment = longest_segment(measured.frames);
     for (size_t i = 0; i < files.size(); i++) {
         const lensprof_deflicker_frame &frame = measured.frames[i];
         found.white_shares.push_back(frame.white_share);
-        if (frame.state == LENSPROF_FRAME_LEVELLED && frame.segment == 0) found.fitted.exposures[i] = frame.exposure;
+        if (frame.state == LENSPROF_FRAME_LEVELLED && frame.segment == segment)
+            found.fitted.exposures[i] = frame.exposure;
     }
     return found;
 }

@@ -1,8 +1,11 @@
 #include "photo/deflicker/measure.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <thread>
 
 #include "photo/base/databases.hpp"
 #include "photo/base/format.hpp"
@@ -19,6 +22,7 @@ constexpr uint32_t kReadSide = 480;  // px, of the reduced frames: five pixels t
 constexpr size_t kFirstFrames = 12;  // that show whether the camera moves
 constexpr double kToneError = 0.03;  // of a response that does not fit
 constexpr size_t kTestedSteps = 16;  // from one frame to the next that responses are tested with
+constexpr uint32_t kFramesAhead = 64;
 constexpr size_t kFittedFrames = 8;
 
 using Deflicker = std::unique_ptr<lensprof_deflicker, DeflickerDestroy>;
@@ -84,31 +88,56 @@ public:
     void run(lensprof_deflicker &deflicker, bool is_checked) {
         const auto count = static_cast<uint32_t>(frames_.size());
         size_t added = 0;
+        next_ = 0;
         for_each_in_order(
-            count, thread_count(options_.threads), [&](uint32_t i) { read(i); },
+            count, thread_count(options_.threads), [&](uint32_t i) { or_fail([&] { read(i); }); },
             [&](uint32_t i) {
-                if (reasons_[i].empty()) try {
-                        add_frame(*frames_[i], pictures_[i], deflicker);
-                        added++;
-                    } catch (const Failure &failure) {
-                        if (!is_of_input(failure)) throw;
-                        reasons_[i] = failure.what();
-                    }
-                pictures_[i] = Picture();
-                events_.update_items("measuring", i + 1, count);
-                if (is_checked && added == kFirstFrames && reasons_[i].empty()) check_still(deflicker);
+                or_fail([&] {
+                    if (reasons_[i].empty() && take(i, deflicker)) added++;
+                    pictures_[i] = Picture();
+                    events_.update_items("measuring", i + 1, count);
+                    if (is_checked && added == kFirstFrames && reasons_[i].empty()) check_still(deflicker);
+                    next_ = i + 1;
+                });
             });
     }
 
     const std::vector<std::string> &reasons() const { return reasons_; }
 
 private:
+    // Threads that wait must not wait for one that failed.
+    template <class Work>
+    void or_fail(const Work &work) {
+        try {
+            work();
+        } catch (...) {
+            failed_ = true;
+            throw;
+        }
+    }
+
+    // Waits until few frames are between this one and the one that is compared next, so that memory is bounded.
     void read(uint32_t i) {
+        while (i >= next_ + kFramesAhead && !failed_) {
+            stop_if_cancelled();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
         try {
             pictures_[i] = read_picture(frames_[i]->file, {kReadSide});
         } catch (const Failure &failure) {
             if (!is_of_input(failure)) throw;
             reasons_[i] = failure.what();
+        }
+    }
+
+    bool take(uint32_t i, lensprof_deflicker &deflicker) {
+        try {
+            add_frame(*frames_[i], pictures_[i], deflicker);
+            return true;
+        } catch (const Failure &failure) {
+            if (!is_of_input(failure)) throw;
+            reasons_[i] = failure.what();
+            return false;
         }
     }
 
@@ -125,6 +154,8 @@ private:
     Events &events_;
     std::vector<Picture> pictures_;
     std::vector<std::string> reasons_;
+    std::atomic<uint32_t> next_{0};
+    std::atomic<bool> failed_{false};
 };
 
 std::vector<const Frame *> pointers_to(const std::vector<Frame> &frames) {
@@ -270,11 +301,22 @@ bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
     });
 }
 
+uint32_t longest_segment(const std::vector<lensprof_deflicker_frame> &measured) {
+    std::map<uint32_t, size_t> frames;
+    for (const lensprof_deflicker_frame &frame : measured)
+        if (frame.state == LENSPROF_FRAME_LEVELLED) frames[frame.segment]++;
+    uint32_t longest = 0;
+    for (const auto &[segment, count] : frames)
+        if (count > frames[longest]) longest = segment;
+    return longest;
+}
+
 std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
                                                  const std::vector<lensprof_deflicker_frame> &measured, size_t most) {
     std::vector<size_t> order;
+    const uint32_t segment = longest_segment(measured);
     for (size_t i = 0; i < measured.size(); i++)
-        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i].segment == 0) order.push_back(i);
+        if (measured[i].state == LENSPROF_FRAME_LEVELLED && measured[i].segment == segment) order.push_back(i);
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return measured[a].exposure.ev < measured[b].exposure.ev; });
     const size_t count = std::min(order.size(), most);

@@ -38,7 +38,10 @@ struct MeasuredSequence {
 // Whether a dozen of these frames, spread over all, show one scene from a camera that did not move; false for fewer.
 bool shows_still_camera(const std::vector<Frame> &frames, Events &events);
 
-// Files of up to `most` frames of the first segment whose exposures are spread evenly over its range.
+// The segment with most levelled frames.
+uint32_t longest_segment(const std::vector<lensprof_deflicker_frame> &measured);
+
+// Files of up to `most` frames of the longest segment whose exposures are spread evenly over its range.
 std::vector<std::string> frames_of_all_exposures(const FrameSequence &sequence,
                                                  const std::vector<lensprof_deflicker_frame> &measured, size_t most);
 

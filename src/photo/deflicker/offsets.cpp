@@ -122,9 +122,14 @@ std::vector<std::string> write_offsets(const std::vector<LevelledFrame> &frames,
                                        const std::string &folder) {
     OutputFiles outputs;
     std::vector<std::string> names;
+    std::map<std::string, std::string> frame_of;
     for (const LevelledFrame &frame : frames) {
-        if (frame.measured.state != LENSPROF_FRAME_LEVELLED) continue;
         const std::string name = offset_file(frame.file, format, folder);
+        if (const auto [other, is_new] = frame_of.emplace(name, frame.file); !is_new)
+            throw Failure(LENSPROF_ERROR_ARGUMENT, other->second + " and " + frame.file + ": would share the settings "
+                                                       + name + "; give frames of one kind");
+        // A frame that is not levelled keeps its own settings, without an offset of an earlier run.
+        if (frame.measured.state != LENSPROF_FRAME_LEVELLED && !path_exists(name)) continue;
         const std::string existing = path_exists(name) ? read_text(name, max_text_bytes) : "";
         outputs.add(name, format == OffsetFormat::xmp ? xmp_with_offset(existing, frame.change_ev(), name)
                                                       : pp3_with_offset(existing, frame.change_ev(), name));
