@@ -333,6 +333,10 @@ void add_response_file(const BracketOptions &o, const BuildReport &report, Outpu
     if (o.output.empty() || !(report.fit.usable || o.store.force)) return;
     make_folder(o.output);
     outputs.add(response_file(o), pcalib_of(report, response_file(o)));
+    if (report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+        warn(streams, response_file(o)
+                          + ": no exposure times were used, so its exponent is a guess; give them with --times FILE, or "
+                            "as times.txt in the folder, and check those that a note rejects");
     note(streams, response_file(o)
                       + ": the response alone: the falloff is the same in all these pictures and cancels; for "
                         "vignette.png use `lensprof calibrate` on overlapping pictures or `lensprof flat` on a card, then "
