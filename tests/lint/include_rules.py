@@ -99,7 +99,7 @@ ROOMS = {
                 "sampling", "flat", "fields", "deflicker", "rendering", "trial", "online", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "correct", "deflicker", "folder", "api"],
+    "src/photo": ["base", "pictures", "video", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "clip", "correct", "deflicker", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
@@ -108,6 +108,8 @@ ROOM_HEADERS = {
     "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
     "src/photo/registration": {"Eigen/*", "opencv2/*", "immintrin.h"},  # nearest_features.cpp
     "src/photo/reconstruction": {"sqlite3.h"},
+    "src/photo/clip": {"Eigen/*"},
+    "src/photo/video": {"libavcodec/*", "libavformat/*", "libavutil/*", "libswscale/*", "opencv2/*"},
     "src/cli/fitting": {"zip.h"},
     "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "fitsio.h", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
                            "png.h", "pugixml.hpp", "tiffio.h", "webp/*", "zlib.h"},
