@@ -516,7 +516,6 @@ void test_known_kinds(void **) {
     const std::string clip = work("clip one.mp4"), db = database();
     for (const Words &words : std::vector<Words>{{"build", clip},
                                                  {"build", clip, clip},
-                                                 {"calibrate", clip, "-o", work("out")},
                                                  {"align", clip, "-o", work("out")},
                                                  {"bracket", clip, clip},
                                                  {"flat", clip},
@@ -527,6 +526,7 @@ void test_known_kinds(void **) {
                                                  {"report", clip, "-o", work("a.html")},
                                                  {"response", clip}})
         assert_refused(unreadable, words, {"clip one.mp4", "is a video (MP4)", "ffmpeg -i '", "frame_%04d.png"});
+    assert_refused(unreadable, {"calibrate", clip, "-o", work("out")}, {"clip one.mp4", "is a video (MP4)"});
     // the same container
     save(work("a.heic"), number(24, 4) + bytes_of("ftypmif1") + number(0, 4) + bytes_of("mif1heic") + Bytes(40, 0));
     assert_false(contains(run_words({"calibrate", work("a.heic"), "-o", work("out")}).err, "video"));

@@ -32,7 +32,7 @@ void cut_to(const std::string &path, double share) {
 std::vector<VideoFrame> frames_of(const std::string &path) {
     VideoReader reader(path);
     std::vector<VideoFrame> frames;
-    for (VideoFrame frame; reader.next(frame);) frames.push_back(frame);
+    for (VideoFrame frame; reader.next(frame); frames.push_back(frame)) reader.read(frame.picture);
     return frames;
 }
 
@@ -131,6 +131,7 @@ void test_rotation(void **) {
         VideoReader reader(in_folder("turned.mp4"));
         VideoFrame frame;
         assert_true(reader.next(frame));
+        reader.read(frame.picture);
         assert_int_equal(frame.picture.width, width);
         assert_true(reader.info().orientation != 1);
         const Picture upright = upright_copy(frame.picture, reader.info().orientation, width);
@@ -157,7 +158,8 @@ void test_cut_files(void **) {
     assert_true(count > 2 && count < 12);
     const std::string unfinished = encode("unfinished.mp4", "-c:v mpeg4");
     cut_to(unfinished, 0.5);
-    assert_failure(LENSPROF_ERROR_READ, "unfinished.mp4: cannot be opened as a video", [&] { frames_of(unfinished); });
+    assert_failure(LENSPROF_ERROR_READ, "unfinished.mp4: is a video (MP4) that cannot be opened",
+                   [&] { frames_of(unfinished); });
     const std::string avi = encode("cut.avi", "-c:v mjpeg -q:v 2");
     cut_to(avi, 0.4);
     assert_true(frames_before_cut(avi) < 12);
@@ -173,7 +175,8 @@ void test_refusals(void **) {
     if (shell("ffmpeg -y -f lavfi -i sine -t 0.2 " + quoted("sound.mkv"))) skip();
     assert_failure(LENSPROF_ERROR_READ, "sound.mkv: contains no video", [&] { frames_of(in_folder("sound.mkv")); });
     save(in_folder("text.mp4"), Bytes(5000, 'x'));
-    assert_failure(LENSPROF_ERROR_READ, "text.mp4: cannot be opened", [&] { frames_of(in_folder("text.mp4")); });
+    assert_failure(LENSPROF_ERROR_READ, "text.mp4: is a video that cannot be opened",
+                   [&] { frames_of(in_folder("text.mp4")); });
     encode("small.h264", "-c:v libx264 -pix_fmt yuv420p");
     encode("large.h264", "-c:v libx264 -pix_fmt yuv420p", "testsrc2=size=128x64:rate=10");
     Bytes both = load(in_folder("small.h264"));

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
+#include <utility>
 
+#include "cli/calibrate/clip.hpp"
 #include "cli/calibrate/folder_page.hpp"
 #include "cli/calibrate/summary.hpp"
 #include "cli/fitting/fit_page.hpp"
@@ -17,12 +19,16 @@
 #include "photo/base/paths.hpp"
 #include "photo/base/utf8.hpp"
 #include "photo/folder/calibrate_folder.hpp"
+#include "photo/video/video.hpp"
 
 namespace lensprof {
 namespace {
 
 struct CalibrateOptions : FolderOptions {
     std::string report;
+    std::string times, frames;  // of a clip, as the next two
+    double frames_per_s = 0.0;
+    bool is_moving = false;
     bool json = false, progress = false;
 };
 
@@ -37,7 +43,7 @@ Json page_of_panorama(Calibration &calibration, const std::vector<std::string> &
 }
 
 void declare(Command &command, CalibrateOptions &o) {
-    command.files("FILE", o.inputs, "pictures and folders of pictures (with subfolders)");
+    command.files("FILE", o.inputs, "pictures and folders of pictures (with subfolders); or one video");
     command.require("FILE");
     command.folder("-o,--output", o.output, "output folder");
     command.require("--output");
@@ -57,6 +63,11 @@ void declare(Command &command, CalibrateOptions &o) {
     command.file("--report", o.report,
                  "write a web page with the pictures before and after, charts and reasons: an .html file");
     command.count("--threads", o.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");
+    command.flag("--moving", o.is_moving, "the folder holds the frames of a moving camera");
+    command.number("--fps", o.frames_per_s, {0.01, 1000.0},
+                   "frames per second that are used of a video; default all. Of a folder their rate; default 25");
+    command.file("--times", o.times, "exposure times of the frames: a file of lines with name, time stamp, exposure");
+    command.folder("--frames", o.frames, "write levelled frames of a video without falloff into this folder, as PNG");
     declare_json(command, o.json);
     declare_progress(command, o.progress);
     command.footer(
@@ -66,8 +77,10 @@ void declare(Command &command, CalibrateOptions &o) {
         "panorama a project (panorama_NAME.pto, for Hugin) and a mosaic before and after\n"
         "(panorama_NAME.jpg); a contact sheet (calibrate_sheet.jpg); and calibrate.json with all numbers and\n"
         "reasons. A second run does only what is missing or has changed, also after an interrupt. Originals\n"
-        "are never modified. Exit code 0: something was corrected, and the rest is listed; 4: nothing could\n"
-        "be corrected; 3: no picture could be read.");
+        "are never modified. Of a video, or the frames of a moving camera, the folder receives the\n"
+        "response (pcalib.txt), the falloff (vignette.png) and the exposure of every frame (times.txt,\n"
+        "exposures.csv, exposures.svg). Exit code 0: something was corrected, and the rest is listed;\n"
+        "4: nothing could be corrected; 3: no picture could be read.");
     command.example("lensprof calibrate holiday -o holiday/calibrated");
 }
 
@@ -85,7 +98,29 @@ void check_report(const CalibrateOptions &o) {
     if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
+// Whether the inputs are one clip. Failure (usage) for options of a clip without one.
+bool is_clip(const CalibrateOptions &o) {
+    const bool is_one = o.inputs.size() == 1;
+    if (is_one && (is_video(o.inputs[0]) || is_frame_folder(o.inputs[0]))) return true;
+    if (is_one && o.is_moving && is_folder(o.inputs[0])) return true;
+    for (const auto &[is_given, name] : {std::pair{o.is_moving, "--moving"},
+                                         {o.frames_per_s > 0.0, "--fps"},
+                                         {!o.times.empty(), "--times"},
+                                         {!o.frames.empty(), "--frames"}})
+        if (is_given)
+            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(name)
+                                                       + ": needs one video, or one folder of frames with --moving; give "
+                                                         "one, or omit the option");
+    return false;
+}
+
 int run(CalibrateOptions &o, Streams &streams) {
+    if (is_clip(o)) {
+        if (!o.report.empty())
+            throw Failure(LENSPROF_ERROR_ARGUMENT, "--report: there is no page of a clip; omit the option");
+        return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.frames_per_s, o.store, o.json, o.progress},
+                              streams);
+    }
     Progress events(streams, o.progress);
     check_report(o);
     o.describe = page_of_panorama;

@@ -10,15 +10,16 @@
 namespace lensprof {
 namespace {
 
-constexpr int reduced_side = 640;    // px, the longer side of the frames that are tracked
-constexpr int most_corners = 360;    // per frame
-constexpr double least_share = 0.8;  // of most_corners, below which new ones are added
+constexpr int reduced_side = 640;        // px, the longer side of the frames that are tracked
+constexpr int most_corners = 360;        // per frame
+constexpr double least_share = 0.8;      // of most_corners, below which new ones are added
+constexpr double least_likeness = 0.95;  // of a corner now and when it was first seen
 constexpr double corner_quality = 0.004, largest_return_px = 0.6;
 constexpr int window_px = 15, levels = 4, border_px = 9;
 constexpr double least_kept = 0.15;  // of the corners, else the frame is a cut
 constexpr uint32_t few_corners = 12;
 constexpr double blank_levels = 6.0;  // mean of a frame without content, from black or white
-constexpr double same_levels = 0.02;  // mean difference of a repeated frame
+constexpr double same_levels = 0.1;   // mean difference of a repeated frame
 
 using Points = std::vector<cv::Point2f>;
 
@@ -83,12 +84,12 @@ cv::Mat unevenness_of(const cv::Mat &grey) {
 
 // The most even place around a corner, relative to it.
 cv::Point2f even_offset(const cv::Mat &unevenness, cv::Point2f corner) {
-    constexpr int reach = 8, step = 2;
+    constexpr int reach = 4;
     const int x = cvRound(corner.x), y = cvRound(corner.y);
     float best = INFINITY;
     cv::Point2f offset(0, 0);
-    for (int dy = -reach; dy <= reach; dy += step)
-        for (int dx = -reach; dx <= reach; dx += step) {
+    for (int dy = -reach; dy <= reach; dy += 2)
+        for (int dx = -reach; dx <= reach; dx += 2) {
             const int u = x + dx, v = y + dy;
             if (u < 4 || v < 4 || u >= unevenness.cols - 4 || v >= unevenness.rows - 4) continue;
             const float value = unevenness.at<float>(v, u);
@@ -97,12 +98,27 @@ cv::Point2f even_offset(const cv::Mat &unevenness, cv::Point2f corner) {
     return offset;
 }
 
+cv::Mat look_of(const cv::Mat &grey, cv::Point2f place) {
+    constexpr int side = 15;
+    cv::Mat look;
+    cv::getRectSubPix(grey, {side, side}, place, look, CV_32F);
+    return look;
+}
+
+// Correlation of two pictures, which does not depend on exposure.
+double likeness(const cv::Mat &a, const cv::Mat &b) {
+    cv::Mat result;
+    cv::matchTemplate(a, b, result, cv::TM_CCOEFF_NORMED);
+    return double(result.at<float>(0, 0));
+}
+
 }  // namespace
 
 struct CornerTracker::State {
     struct Corner {
         uint32_t track;
         cv::Point2f place, born, offset;
+        cv::Mat look;  // its surroundings when it was first seen
     };
 
     void follow(const cv::Mat &grey, TrackedFrame &found);
@@ -137,6 +153,7 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
         const bool is_inside = inside.contains(to[i]);
         inner += is_inside || !is_found[i];
         if (!is_found[i] || !is_back[i] || !is_inside || cv::norm(back[i] - from[i]) > largest_return_px) continue;
+        if (likeness(corners[i].look, look_of(grey, to[i])) < least_likeness) continue;
         kept.push_back(corners[i]);
         kept.back().place = to[i];
         motion.push_back(cv::norm(to[i] - from[i]));
@@ -160,7 +177,7 @@ void CornerTracker::State::find_new(const cv::Mat &grey) {
     cv::goodFeaturesToTrack(grey, found, most_corners - int(corners.size()), corner_quality, distance, mask, 5);
     const cv::Mat unevenness = unevenness_of(grey);
     for (const cv::Point2f &place : found)
-        corners.push_back({next_track++, place, place, even_offset(unevenness, place)});
+        corners.push_back({next_track++, place, place, even_offset(unevenness, place), look_of(grey, place)});
 }
 
 TrackedFrame CornerTracker::add(const Picture &frame) {

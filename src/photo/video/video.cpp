@@ -14,6 +14,7 @@ extern "C" {
 }
 
 #include "photo/base/failure.hpp"
+#include "photo/base/file_kind.hpp"
 #include "photo/base/format.hpp"
 
 namespace lensprof {
@@ -109,13 +110,20 @@ std::string tag_of(const AVFormatContext &file, const AVStream &stream, std::ini
 struct VideoReader::Decoder {
     explicit Decoder(const std::string &path);
 
-    bool next(VideoFrame &frame, bool wants_pixels);
+    bool next(VideoFrame &frame);
+    void convert(Picture &picture);
 
     VideoInfo info;
 
 private:
     [[noreturn]] void fail(const std::string &what) const { throw Failure(LENSPROF_ERROR_READ, path_ + ": " + what); }
+    [[noreturn]] void fail_whole(const std::string &why) const {
+        const auto kind = other_pictures(path_);
+        fail("is " + (kind ? kind->kind : std::string("a video")) + " that " + why
+             + "; a recording that was not finished, or a damaged file: repair it, or give another copy");
+    }
     [[noreturn]] void fail_cut(const std::string &why) const {
+        if (!read_) fail_whole("has no frame that can be decoded: " + why);
         fail("is damaged or cut: " + why + " after " + counted(read_, "frame")
              + "; copy the file again, or keep its intact part with `ffmpeg -i FILE -c copy intact.mkv`");
     }
@@ -125,7 +133,6 @@ private:
     bool is_cut() const;
     bool receive();
     void send();
-    void convert(Picture &picture);
 
     std::string path_;
     std::unique_ptr<AVFormatContext, FormatClose> file_;
@@ -145,16 +152,14 @@ VideoReader::Decoder::Decoder(const std::string &path) : path_(path) {
     av_log_set_level(AV_LOG_QUIET);
     open();
     is_held_ = receive();
-    if (!is_held_) fail("has no frame that can be decoded; give another copy of the file");
+    if (!is_held_) fail_whole("has no frame");
     describe();
 }
 
 void VideoReader::Decoder::open() {
     AVFormatContext *file = nullptr;
     int code = avformat_open_input(&file, ("file:" + path_).c_str(), nullptr, nullptr);
-    if (code < 0)
-        fail("cannot be opened as a video (" + text_of_error(code)
-             + "): a recording that was not finished, or a damaged file; repair it, or give another copy");
+    if (code < 0) fail_whole("cannot be opened: " + text_of_error(code));
     file_.reset(file);
     code = avformat_find_stream_info(file, nullptr);
     const AVCodec *decoder = nullptr;
@@ -275,7 +280,7 @@ void VideoReader::Decoder::convert(Picture &picture) {
     sws_scale(scaler_.get(), frame_->data, frame_->linesize, 0, frame_->height, rows, row_bytes);
 }
 
-bool VideoReader::Decoder::next(VideoFrame &frame, bool wants_pixels) {
+bool VideoReader::Decoder::next(VideoFrame &frame) {
     if (!is_held_ && !(is_held_ = receive())) return false;
     if (static_cast<uint32_t>(frame_->width) != info.width || static_cast<uint32_t>(frame_->height) != info.height)
         fail(format("frame %llu has %d x %d pixels, but those before it have %u x %u; split the video there",
@@ -288,7 +293,6 @@ bool VideoReader::Decoder::next(VideoFrame &frame, bool wants_pixels) {
                  : seconds_ + frame_s_;
     if (read_) seconds_ = stated_s > seconds_ ? stated_s : seconds_ + frame_s_;
     frame.seconds = seconds_, frame.number = read_++;
-    if (wants_pixels) convert(frame.picture);
     is_held_ = false;
     return true;
 }
@@ -298,6 +302,7 @@ bool can_read_video() { return true; }
 VideoReader::VideoReader(const std::string &path) : decoder_(std::make_unique<Decoder>(path)) {}
 VideoReader::~VideoReader() = default;
 const VideoInfo &VideoReader::info() const { return decoder_->info; }
-bool VideoReader::next(VideoFrame &frame, bool wants_pixels) { return decoder_->next(frame, wants_pixels); }
+bool VideoReader::next(VideoFrame &frame) { return decoder_->next(frame); }
+void VideoReader::read(Picture &picture) { decoder_->convert(picture); }
 
 }  // namespace lensprof

@@ -49,9 +49,11 @@ public:
 
     const VideoInfo &info() const;
 
-    // Reads the next frame into `frame`, whose memory is used again; false after the last. The pixels are converted
-    // only if `wants_pixels`, otherwise the picture stays as it is.
-    bool next(VideoFrame &frame, bool wants_pixels = true);
+    // Advances to the next frame, and sets its number and time; false after the last.
+    bool next(VideoFrame &frame);
+
+    // The pixels of that frame, into memory that is used again.
+    void read(Picture &picture);
 
 private:
     struct Decoder;

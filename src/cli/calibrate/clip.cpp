@@ -1,0 +1,199 @@
+#include "cli/calibrate/clip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/calibrate/clip_files.hpp"
+#include "cli/program/exit_code.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/progress.hpp"
+#include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/calibration/outcome.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double usual_rate = 25.0;  // frames per second of a folder
+
+// What the container states of the camera; a video states no lens.
+lensprof_profile_key clip_key(const VideoInfo &info) {
+    PictureMetadata metadata = unknown_metadata();
+    set_text(metadata.key.camera_maker, sizeof metadata.key.camera_maker, info.camera_maker);
+    set_text(metadata.key.camera_model, sizeof metadata.key.camera_model, info.camera_model);
+    metadata.key.processing = LENSPROF_PROCESSING_JPEG;
+    return metadata.key;
+}
+
+struct Tally {
+    size_t measured = 0, blank = 0, unlinked = 0, repeats = 0;
+    uint32_t segments = 0;
+    double low_ev = INFINITY, high_ev = -INFINITY;
+
+    explicit Tally(const ClipTracks &clip) {
+        for (const ClipFrame &frame : clip.frames) {
+            (frame.state == ClipState::measured ? measured : frame.state == ClipState::blank ? blank : unlinked)++;
+            repeats += frame.repeats;
+            if (frame.state != ClipState::measured) continue;
+            segments = std::max(segments, frame.segment + 1);
+            low_ev = std::min(low_ev, frame.exposure.ev), high_ev = std::max(high_ev, frame.exposure.ev);
+        }
+    }
+};
+
+[[noreturn]] void refuse_static(const ClipTracks &clip) {
+    throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                  clip.path + ": the camera does not move in the first " + counted(clip.frames.size(), "frame")
+                      + ", which do not show its falloff; to level the exposure of a stationary camera use `lensprof "
+                        "deflicker`, or give the part of the clip in which it moves",
+                  LENSPROF_REASON_FEW_PAIRS);
+}
+
+// The first frames of segments, numbered from 1.
+std::string breaks_of(const ClipTracks &clip) {
+    constexpr int most_listed = 8;
+    std::string list;
+    int count = 0;
+    for (size_t i = 0, segment = 0; i < clip.frames.size(); i++) {
+        if (clip.frames[i].state != ClipState::measured || clip.frames[i].segment == segment) continue;
+        segment = clip.frames[i].segment;
+        if (count++ < most_listed) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
+    }
+    return count > most_listed ? list + format(" and %d more", count - most_listed) : list;
+}
+
+// What the clip shows of the exponent that response, falloff and exposures share.
+void report_exponent(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, Streams &streams) {
+    constexpr double fixed_ev = 0.1;
+    const lensprof_fit_result &result = fit.report.fit;
+    if (result.gamma_from != LENSPROF_GAMMA_PRIOR) return;
+    const bool is_fixed = tally.high_ev - tally.low_ev < fixed_ev, has_times = fit.report.exposures_given;
+    const char *reason = is_fixed    ? "all frames have one exposure"
+                         : has_times ? "the exposures of its keyframes differ too little"
+                                     : "the exposure times are unknown";
+    const char *remedy = is_fixed || has_times ? "record while the exposure changes by 1 EV or more"
+                                               : "give the exposure time of each frame with --times";
+    note(streams, clip.path + ": " + reason
+                      + format("; the exponent of response, falloff and exposures is that of typical cameras, with a "
+                               "standard error of %.0f %%; to measure it %s, or calibrate the response first with "
+                               "`lensprof bracket`",
+                               100.0 * result.gamma_sigma, remedy));
+}
+
+void report_frames(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, Streams &streams) {
+    if (clip.info.is_interlaced)
+        warn(streams, clip.path + ": is interlaced; deinterlace it first for better exposures");
+    if (clip.info.orientation != 1)
+        note(streams, clip.path + ": is shown rotated; the vignette and frames are as stored");
+    if (tally.segments > 1)
+        note(streams, clip.path + ": new scenes begin at frames " + breaks_of(clip)
+                          + "; exposures are relative to the mean of each scene");
+    if (tally.blank)
+        note(streams, clip.path + ": " + counted(tally.blank, "frame") + " black or white, without exposure");
+    if (tally.unlinked)
+        warn(streams, clip.path + ": " + counted(tally.unlinked, "frame")
+                          + " without exposure, because too few scene points are found in others");
+    if (tally.repeats) note(streams, clip.path + ": " + counted(tally.repeats, "frame") + " repeat the one before");
+    report_exponent(fit, clip, tally, streams);
+}
+
+Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally,
+               const std::vector<std::string> &written) {
+    Json frames = Json::array();
+    for (const ClipFrame &frame : clip.frames)
+        frames.push_back({{"seconds", frame.seconds},
+                          {"state", clip_state_name(frame.state)},
+                          {"segment", frame.segment},
+                          {"ev", number_or_null(frame.exposure.ev)},
+                          {"ev_sigma", frame.ev_sigma},
+                          {"keyframe", frame.is_keyframe},
+                          {"repeats", frame.repeats}});
+    return {{"codec", clip.info.codec},
+            {"width", clip.info.width},
+            {"height", clip.info.height},
+            {"orientation", clip.info.orientation},
+            {"frames_in_clip", clip.frames_in_clip},
+            {"measured", tally.measured},
+            {"segments", tally.segments},
+            {"points", fit.points},
+            {"observations", fit.observations},
+            {"frames", frames},
+            {"written", written}};
+}
+
+void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, const std::vector<std::string> &written,
+                std::ostream &out) {
+    const lensprof_fit_result &result = fit.report.fit;
+    out << counted(clip.frames.size(), "frame") << " of " << clip.info.width << " x " << clip.info.height << " pixels, "
+        << tally.measured << " measured, " << fit.keyframes.size() << " keyframes in the fit\n"
+        << format("exposure  %.2f to %.2f EV\n", tally.low_ev, tally.high_ev)
+        << format("corner    %.3f of the light in the middle\n",
+                  lensprof_vignetting_eval(&green_falloff(result), 1.0, nullptr))
+        << format("residual  %.2f levels of 255\n", result.heldout_rms);
+    for (const std::string &name : written) out << "written   " << name << "\n";
+}
+
+}  // namespace
+
+bool is_frame_folder(const std::string &path) {
+    return is_folder(path) && is_folder((std::filesystem::path(path) / "images").string())
+           && path_exists((std::filesystem::path(path) / "times.txt").string());
+}
+
+int calibrate_clip(const ClipCommand &o, Streams &streams) {
+    Progress events(streams, o.progress);
+    const bool is_of_pictures = is_folder(o.input);
+    const double rate = is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate;
+    const auto source = open_frames(o.input, rate, events);
+    ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events);
+    if (clip.frames.size() < 2)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, o.input + ": has only one frame; give a clip of a moving camera",
+                      LENSPROF_REASON_FEW_PAIRS);
+    if (clip.is_static()) refuse_static(clip);
+    ClipOptions options;
+    std::string times = o.times;
+    if (times.empty() && is_frame_folder(o.input)) times = (std::filesystem::path(o.input) / "times.txt").string();
+    if (!times.empty()) options.known_ev = read_clip_times(times, clip);
+    if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
+        options.known_ev.clear();
+    const lensprof_profile_key key = clip_key(clip.info);
+    ClipFit fit = fit_clip(options, key, clip, events);
+    events.clear();
+    const Tally tally(clip);
+    StoreOptions store = o.store;
+    if (!store.no_store && !*key.camera_model) {
+        store.no_store = true;
+        note(streams, o.input + ": states no camera, so that no profile is stored; store pcalib.txt and vignette.png "
+                                "with `lensprof profile import` and the name of the camera");
+    }
+    if (!store.no_store) store_result(fit.report, key, store, {"clip radiance", o.input, nullptr});
+    const Outcome outcome = outcome_of(fit.report, store, o.input, true);
+    OutputFiles outputs;
+    std::vector<std::string> written;
+    make_folder(o.output);
+    if (fit.best.corrects()) written = write_model(fit, clip, o.output, outputs);
+    const auto tables = write_exposures(clip, offset_of_times(clip, options.known_ev), o.output, outputs);
+    outputs.commit();
+    written.insert(written.end(), tables.begin(), tables.end());
+    if (!o.levelled.empty() && fit.best.corrects()) {
+        make_folder(o.levelled);
+        write_levelled_frames(fit, clip, rate, o.levelled, events);
+        written.push_back(o.levelled);
+    }
+    if (o.json) {
+        Json json = build_json(fit.report);
+        json["clip"] = clip_json(fit, clip, tally, written);
+        print_json(json, streams.out);
+    } else {
+        print_clip(fit, clip, tally, written, streams.out);
+    }
+    report_frames(fit, clip, tally, streams);
+    for (const Notice &notice : outcome.notices.list) events.notice(notice.severity, notice.item, notice.text);
+    if (!outcome.is_good) print_message(streams, outcome.refusal);
+    return static_cast<int>(outcome.is_good ? ExitCode::done : ExitCode::not_usable);
+}
+
+}  // namespace lensprof

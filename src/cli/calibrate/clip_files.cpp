@@ -1,0 +1,187 @@
+#include "cli/calibrate/clip_files.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "cli/correct/exposure_chart.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/clip/frame_source.hpp"
+
+namespace lensprof {
+namespace {
+
+std::string path_in(const std::string &folder, const std::string &name) {
+    return (std::filesystem::path(folder) / name).string();
+}
+
+double number_in(const std::string &word, const std::string &where) {
+    double value = NAN;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+        throw Failure(LENSPROF_ERROR_READ, where + ": " + word + " is not a finite number; correct it");
+    return value;
+}
+
+std::vector<LevelledFrame> charted(const ClipTracks &clip) {
+    std::vector<LevelledFrame> frames;
+    for (const ClipFrame &frame : clip.frames) {
+        LevelledFrame charted{};
+        lensprof_deflicker_frame_init(&charted.measured);
+        lensprof_exposure_init(&charted.wanted);
+        charted.measured.state =
+            frame.state == ClipState::measured ? LENSPROF_FRAME_LEVELLED : LENSPROF_FRAME_DISAGREES;
+        charted.measured.segment = frame.segment, charted.measured.seconds = frame.seconds;
+        charted.measured.exposure = frame.exposure;
+        frames.push_back(charted);
+    }
+    return frames;
+}
+
+// Without the exposure where it is not measured.
+std::string times_text(const ClipTracks &clip, double offset_ev) {
+    std::string text;
+    for (size_t i = 0; i < clip.frames.size(); i++) {
+        const ClipFrame &frame = clip.frames[i];
+        text += format("%05zu %.6f", i + 1, frame.seconds);
+        if (frame.state == ClipState::measured) text += format(" %.6g", std::exp2(frame.exposure.ev + offset_ev));
+        text += "\n";
+    }
+    return text;
+}
+
+std::string exposure_table(const ClipTracks &clip) {
+    std::string text = "frame,seconds,state,segment,ev,ev_sigma,red,blue,keyframe,repeats,points,mean_level\n";
+    for (size_t i = 0; i < clip.frames.size(); i++) {
+        const ClipFrame &frame = clip.frames[i];
+        text += format("%zu,%.6f,%s,%u,", i + 1, frame.seconds, clip_state_name(frame.state), frame.segment);
+        if (frame.state == ClipState::measured)
+            text += format("%.5f,%.5f,%.5f,%.5f", frame.exposure.ev, frame.ev_sigma, frame.exposure.white_balance[0],
+                           frame.exposure.white_balance[2]);
+        else
+            text += ",,,";
+        text +=
+            format(",%d,%d,%zu,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations.size(), frame.mean_level);
+    }
+    return text;
+}
+
+}  // namespace
+
+const char *clip_state_name(ClipState state) {
+    return state == ClipState::measured ? "measured" : state == ClipState::blank ? "blank" : "unlinked";
+}
+
+std::vector<double> read_clip_times(const std::string &path, const ClipTracks &clip) {
+    std::istringstream text(read_text(path, max_text_bytes));
+    std::vector<double> ev;
+    size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+        const std::string where = path + ": line " + std::to_string(++number);
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::vector<std::string> fields;
+        for (std::string word; words >> word;) fields.push_back(word);
+        if (fields.empty()) continue;
+        if (fields.size() < 2 || fields.size() > 3)
+            throw Failure(LENSPROF_ERROR_READ, where + ": give name, time stamp and exposure time");
+        const double time = fields.size() == 3 ? number_in(fields[2], where) : NAN;
+        if (time <= 0.0) throw Failure(LENSPROF_ERROR_READ, where + ": the exposure time must be above 0; correct it");
+        ev.push_back(std::log2(time));
+    }
+    if (ev.size() != clip.frames_in_clip && ev.size() != clip.frames.size())
+        throw Failure(LENSPROF_ERROR_READ,
+                      path
+                          + format(": has %zu lines, but the clip has %llu frames; give a line for "
+                                   "each frame",
+                                   ev.size(), static_cast<unsigned long long>(clip.frames_in_clip)));
+    std::vector<double> of_frames;
+    for (size_t i = 0; i < clip.frames.size(); i++)
+        of_frames.push_back(ev[ev.size() == clip.frames_in_clip ? clip.frames[i].number : i]);
+    return of_frames;
+}
+
+double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev) {
+    std::vector<double> offsets;
+    for (size_t i = 0; i < known_ev.size(); i++)
+        if (clip.frames[i].state == ClipState::measured && std::isfinite(known_ev[i]))
+            offsets.push_back(known_ev[i] - clip.frames[i].exposure.ev);
+    if (offsets.empty()) return 0.0;
+    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+    std::nth_element(offsets.begin(), middle, offsets.end());
+    return *middle;
+}
+
+std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
+                                     OutputFiles &outputs) {
+    const auto profile = fit.profile();
+    const std::string response = path_in(folder, "pcalib.txt"), falloff = path_in(folder, "vignette.png");
+    const lensprof_profile *const all[] = {profile.get()};
+    lensprof_export_options options;
+    lensprof_export_options_init(&options);
+    options.format = LENSPROF_FORMAT_PCALIB;
+    outputs.add(response, written(response, [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
+                    return lensprof_export(all, 1, &options, data, capacity, count, error);
+                }));
+    Picture map;
+    map.width = map.frame_width = clip.info.width, map.height = map.frame_height = clip.info.height;
+    map.sample = LENSPROF_SAMPLE_U16, map.layout = LENSPROF_LAYOUT_GREY;
+    map.row_bytes = size_t(2) * map.width;
+    map.pixels.resize(map.row_bytes * map.height);
+    std::vector<float> values(size_t(map.width) * map.height);
+    lensprof_error error{};
+    check(lensprof_map_write(profile.get(), map.width, map.height, map.width, map.height, 1, LENSPROF_MAP_ATTENUATION,
+                             values.data(), &error),
+          falloff, &error);
+    for (size_t i = 0; i < values.size(); i++) {
+        const auto level = static_cast<uint16_t>(std::clamp(std::lround(65535.0f * values[i]), 1L, 65535L));
+        std::memcpy(&map.pixels[2 * i], &level, sizeof level);
+    }
+    write_picture(falloff, map);
+    return {response, falloff};
+}
+
+std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
+                                         OutputFiles &outputs) {
+    const std::string times = path_in(folder, "times.txt"), table = path_in(folder, "exposures.csv"),
+                      chart = path_in(folder, "exposures.svg");
+    outputs.add(times, times_text(clip, offset_ev));
+    outputs.add(table, exposure_table(clip));
+    const std::string title =
+        counted(clip.frames.size(), "frame") + " of " + std::filesystem::path(clip.path).filename().string();
+    outputs.add(chart, exposure_chart(charted(clip), true, title, chart));
+    return {times, table, chart};
+}
+
+size_t write_levelled_frames(const ClipFit &fit, const ClipTracks &clip, double frames_per_s, const std::string &folder,
+                             Events &events) {
+    const auto profile = fit.profile();
+    const auto source = open_frames(clip.path, frames_per_s, events);
+    size_t done = 0, count = 0;
+    for (VideoFrame frame; done < clip.frames.size() && source->next(frame);) {
+        const ClipFrame &measured = clip.frames[done];
+        if (frame.number != measured.number) continue;
+        done++;
+        if (measured.state != ClipState::measured) continue;
+        stop_if_cancelled();
+        source->read(frame.picture);
+        const std::string name = path_in(folder, format("frame_%05zu.png", done));
+        lensprof_error error{};
+        lensprof_target target = frame.picture.target();
+        check(lensprof_correct(profile.get(), &measured.exposure, &target, &error), name, &error);
+        frame.picture.traits = PictureTraits();
+        write_picture(name, frame.picture);
+        count++;
+        events.update_items("frames", static_cast<uint32_t>(done), static_cast<uint32_t>(clip.frames.size()));
+    }
+    events.clear();
+    return count;
+}
+
+}  // namespace lensprof

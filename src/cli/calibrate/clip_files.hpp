@@ -1,0 +1,35 @@
+// What `lensprof calibrate` writes of a clip.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "photo/base/output_file.hpp"
+#include "photo/clip/clip_calibration.hpp"
+
+namespace lensprof {
+
+// Exposure times of frames, from a file of lines "name time_stamp exposure" as of the TUM mono dataset: EV per frame,
+// NaN where the line states none. There is a line for each frame of the clip or, of a part of the frames, for each of
+// those. Failure (unreadable) with the line.
+std::vector<double> read_clip_times(const std::string &path, const ClipTracks &clip);
+
+// The EV that is added to an exposure of the clip to get log2 of the known exposure time; 0 if none is known.
+double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
+
+// pcalib.txt and vignette.png (16 bit, of the frame's size), which DSO and its kin read. Returns their names.
+std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
+                                     OutputFiles &outputs);
+
+// times.txt, exposures.csv and exposures.svg.
+std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
+                                         OutputFiles &outputs);
+
+// The frames at the mean exposure of their segment without falloff: frame_00001.png and so on. Frames that are not
+// measured are left out. Returns the number written.
+size_t write_levelled_frames(const ClipFit &fit, const ClipTracks &clip, double frames_per_s, const std::string &folder,
+                             Events &events);
+
+const char *clip_state_name(ClipState state);
+
+}  // namespace lensprof

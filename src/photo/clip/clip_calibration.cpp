@@ -1,0 +1,118 @@
+#include "photo/clip/clip_calibration.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "photo/base/format.hpp"
+#include "photo/base/lap.hpp"
+#include "photo/clip/clip_exposures.hpp"
+#include "photo/clip/keyframes.hpp"
+
+namespace lensprof {
+namespace {
+
+std::vector<lensprof_fit_image> keyframe_images(const ClipOptions &o, const ClipTracks &clip,
+                                                const std::vector<uint32_t> &keyframes, uint32_t reference) {
+    std::vector<lensprof_fit_image> images(keyframes.size());
+    for (uint32_t k = 0; k < images.size(); k++) {
+        lensprof_fit_image_init(&images[k], k, clip.info.width, clip.info.height);
+        images[k].free = LENSPROF_FREE_EV | (clip.channels == 3 ? LENSPROF_FREE_RED | LENSPROF_FREE_BLUE : 0);
+        if (k == reference) images[k].free = 0;
+        if (o.known_ev.empty() || std::isnan(o.known_ev[keyframes[k]])) continue;
+        images[k].known_ev = o.known_ev[keyframes[k]];
+        images[k].known_ev_sigma = o.known_sigma_ev;
+    }
+    return images;
+}
+
+// A few of the observations of a point, far apart: the fit compares neighbours in time, which differ in light and place
+// only then. Where they begin depends on the point, so that all keyframes are used.
+std::vector<lensprof_observation> spread_observations(const std::vector<lensprof_observation> &all) {
+    constexpr size_t most = 8;
+    if (all.size() <= most) return all;
+    const double golden = 0.6180339887498949 * all[0].point, shift = golden - std::floor(golden);
+    std::vector<lensprof_observation> some;
+    for (size_t n = 0; n < most; n++)
+        some.push_back(all[static_cast<size_t>((double(n) + shift) * double(all.size()) / most)]);
+    return some;
+}
+
+// Observations of the points that two or more keyframes show.
+std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
+                                                        const std::vector<uint32_t> &keyframes) {
+    std::map<uint32_t, std::vector<lensprof_observation>> points;
+    for (uint32_t k = 0; k < keyframes.size(); k++)
+        for (const ClipObservation &seen : clip.frames[keyframes[k]].observations) {
+            if (std::isnan(seen.value[0]) || std::isnan(seen.value[1]) || std::isnan(seen.value[2])) continue;
+            points[seen.track].push_back({seen.track,
+                                          k,
+                                          {double(seen.x), double(seen.y)},
+                                          {double(seen.value[0]), double(seen.value[1]), double(seen.value[2])}});
+        }
+    std::vector<lensprof_observation> observations;
+    for (const auto &[track, of_point] : points)
+        if (of_point.size() > 1)
+            for (const lensprof_observation &seen : spread_observations(of_point)) observations.push_back(seen);
+    return observations;
+}
+
+ClipModel model_of(const Fitted &best) { return {best.response_of(0), best.falloff_of(0)}; }
+
+}  // namespace
+
+std::unique_ptr<lensprof_profile> ClipFit::profile() const {
+    auto profile = new_profile();
+    profile->response[0] = best.response_of(0);
+    const auto falloff = best.falloff_of(0);
+    profile->vignettings = best.falloff_curves_of(0);
+    std::copy_n(falloff.begin(), falloff.size(), profile->vignetting);
+    return profile;
+}
+
+ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
+    ClipFit fit_of_clip;
+    auto clock = std::chrono::steady_clock::now();
+    auto &keyframes = fit_of_clip.keyframes = choose_keyframes(clip, o.most_keyframes);
+    FitInput input;
+    input.observations = keyframe_observations(clip, keyframes);
+    if (keyframes.size() < 2 || input.observations.empty())
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      clip.path + ": no scene points are seen in several frames, because the frames are too dark, "
+                                  "blurred or far apart; give a clip of a textured scene with slower motion",
+                      LENSPROF_REASON_FEW_PAIRS);
+    fit_of_clip.observations = input.observations.size();
+    for (size_t i = 0; i < input.observations.size(); i++)
+        fit_of_clip.points += !i || input.observations[i].point != input.observations[i - 1].point;
+    BuildReport &report = fit_of_clip.report;
+    for (const uint32_t frame : keyframes) {
+        clip.frames[frame].is_keyframe = true;
+        report.names.push_back(format("frame %u", frame + 1));
+    }
+    report.reference = static_cast<uint32_t>(keyframes.size() / 2);
+    report.exposures_given = !o.known_ev.empty();
+    FitOptions options = o.fit;
+    options.method = LENSPROF_METHOD_RADIANCE;
+    input.options = fit_options(options);
+    input.options.channels = clip.channels;
+    input.options.reference = report.reference;
+    input.options.moving_camera = 1;
+    if (o.fit.camera_kind) report.camera_kind = {*o.fit.camera_kind, KindFrom::option};
+    if (!o.fit.camera_kind && *key.camera_model)
+        report.camera_kind = {lensprof_camera_kind_of(&key), KindFrom::pictures};
+    input.options.camera_kind = report.camera_kind.kind;
+    input.images = keyframe_images(o, clip, keyframes, report.reference);
+    report.sample_s = lap(clock);
+    fit_of_clip.best = fit(input, report.reference, clip.path, events, &report.quality);
+    const Fitted &best = fit_of_clip.best;
+    report.fit = best.result, report.held = best.held, report.verdict = best.verdict;
+    name_images(report.names, report.verdict);
+    report.exposures = best.exposures, report.reference = best.reference;
+    events.update("exposures", 0.9);
+    find_exposures(model_of(best), clip);
+    events.clear();
+    return fit_of_clip;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,33 @@
+// The calibration of a clip: response, falloff, and the exposure of every frame.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "photo/calibration/fit.hpp"
+#include "photo/clip/clip_tracks.hpp"
+
+namespace lensprof {
+
+struct ClipOptions {
+    FitOptions fit;
+    std::vector<double> known_ev;  // per frame, NaN = unknown; empty: none is known
+    double known_sigma_ev = 0.02;  // standard error of each
+    uint32_t most_keyframes = 60;
+};
+
+struct ClipFit {
+    BuildReport report;  // of the keyframes
+    Fitted best;
+    std::vector<uint32_t> keyframes;
+    size_t points = 0, observations = 0;  // of the fit
+
+    std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone
+};
+
+// Fits response, falloff, and exposures of keyframes with the method radiance, then sets the exposures of all frames of
+// the clip. Failure (not usable) for a clip in which no scene points are followed.
+ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events);
+
+}  // namespace lensprof

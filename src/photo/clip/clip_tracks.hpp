@@ -1,0 +1,66 @@
+// Scene points followed through the frames of a clip, and their grey values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "photo/base/events.hpp"
+#include "photo/clip/frame_source.hpp"
+
+namespace lensprof {
+
+enum class ClipState {
+    measured,
+    blank,    // black or white: nothing to measure
+    unlinked  // shares too few scene points with other frames
+};
+
+// One view of a scene point.
+struct ClipObservation {
+    uint32_t track;
+    float x, y;                    // px of the frame
+    std::array<float, 3> value{};  // mean of a patch, 0..1; 1 = saturated, NaN = saturated in part, or uneven
+};
+
+struct ClipFrame {
+    uint64_t number = 0;  // in the clip, from 0
+    double seconds = 0.0;
+    double mean_level = 0.0;  // of its samples, 0..255
+    double motion = 0.0;      // since the frame before, half diagonals
+    bool repeats = false, is_keyframe = false;
+    std::vector<ClipObservation> observations;  // sorted by track
+
+    ClipState state = ClipState::unlinked;
+    uint32_t segment = 0;          // number of breaks before it
+    lensprof_exposure exposure{};  // relative to the mean of its segment; NaN unless measured
+    double ev_sigma = 0.0;         // of its ratio to the measured frame before it, EV
+};
+
+struct ClipTracks {
+    std::string path;
+    VideoInfo info;
+    uint32_t channels = 3;
+    std::vector<ClipFrame> frames;
+    uint64_t frames_in_clip = 0;
+    double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
+    bool is_static() const { return travel < 0.01; }
+};
+
+// Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). `taken_per_s`
+// frames per second are taken, 0 = all. Ends early (`is_static`) where nothing moved in the first 300.
+ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
+
+// The observations of the same tracks in two frames: call(a, b).
+template <class Call>
+void for_shared_tracks(const ClipFrame &first, const ClipFrame &second, const Call &call) {
+    auto b = second.observations.begin();
+    for (const ClipObservation &a : first.observations) {
+        while (b != second.observations.end() && b->track < a.track) ++b;
+        if (b == second.observations.end()) return;
+        if (b->track == a.track) call(a, *b);
+    }
+}
+
+}  // namespace lensprof

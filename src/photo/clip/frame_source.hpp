@@ -1,0 +1,28 @@
+// Frames of a moving camera: of a video, or pictures of a folder.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "photo/base/events.hpp"
+#include "photo/video/video.hpp"
+
+namespace lensprof {
+
+class FrameSource {
+public:
+    virtual ~FrameSource() = default;
+
+    virtual const VideoInfo &info() const = 0;
+    virtual std::string name_of(uint64_t number) const = 0;  // for messages, of a frame that was read
+
+    // As in VideoReader.
+    virtual bool next(VideoFrame &frame) = 0;
+    virtual void read(Picture &picture) = 0;
+};
+
+// The video, or the pictures of the folder (or of images/ in it) in alphabetical order, `frames_per_s` apart in time.
+// Failure as of VideoReader and read_picture; Failure (unreadable) for pictures of different sizes.
+std::unique_ptr<FrameSource> open_frames(const std::string &path, double frames_per_s, Events &events);
+
+}  // namespace lensprof

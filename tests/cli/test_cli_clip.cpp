@@ -1,0 +1,211 @@
+// `lensprof calibrate` of frames of a moving camera: a folder of rendered frames, and videos that ffmpeg makes of them.
+#include <sstream>
+
+#include "cli_runs.hpp"
+
+#include "photo/video/video.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+constexpr uint32_t width = 320, height = 240, frames = 48;
+constexpr double gamma_of_camera = 2.2, corner = 0.55;
+
+// Even patches of all sizes with sharp rims, as light.
+struct Wall {
+    static constexpr uint32_t columns = 1200, rows = 300;
+    std::vector<float> light = std::vector<float>(size_t(columns) * rows * 3, 0.15f);
+
+    Wall() {
+        uint32_t state = 7;
+        const auto random = [&](uint32_t below) {
+            state = state * 1664525u + 1013904223u;
+            return (state >> 8) % below;
+        };
+        for (int patch = 0; patch < 2600; patch++) {
+            const uint32_t left = random(columns), top = random(rows), w = 8 + random(36), h = 8 + random(36);
+            const double level = 0.03 * std::exp2(random(1000) / 1000.0 * 4.3);
+            const double tint[3] = {1.0, 0.8 + random(100) / 250.0, 0.8 + random(100) / 250.0};
+            for (uint32_t y = top; y < std::min(rows, top + h); y++)
+                for (uint32_t x = left; x < std::min(columns, left + w); x++)
+                    for (size_t c = 0; c < 3; c++) light[(y * columns + x) * 3 + c] = float(level * tint[c]);
+        }
+    }
+
+    double at(double x, double y, size_t c) const {
+        const auto u = static_cast<size_t>(x), v = static_cast<size_t>(y);
+        const double fx = x - double(u), fy = y - double(v);
+        const auto l = [&](size_t a, size_t b) { return double(light[(b * columns + a) * 3 + c]); };
+        return (1 - fy) * ((1 - fx) * l(u, v) + fx * l(u + 1, v))
+               + fy * ((1 - fx) * l(u, v + 1) + fx * l(u + 1, v + 1));
+    }
+};
+
+double true_ev(uint32_t i) { return 0.7 * std::sin(i / 8.0); }
+
+double true_falloff(double x, double y) {
+    const double u = x - (width - 1) / 2.0, v = y - (height - 1) / 2.0;
+    return 1.0 - (1.0 - corner) * (u * u + v * v) / (0.25 * (width * width + height * height));
+}
+
+// The frame of a camera that moves by `step` px per frame.
+Picture rendered(const Wall &wall, uint32_t i, double step) {
+    Picture frame;
+    frame.width = frame.frame_width = width, frame.height = frame.frame_height = height;
+    frame.row_bytes = size_t(3) * width;
+    frame.pixels.resize(frame.row_bytes * height);
+    uint32_t state = i + 1;
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++)
+            for (size_t c = 0; c < 3; c++) {
+                const double light = wall.at(x + i * step, y + 20.0 + (step > 0.0 ? 15.0 * std::sin(i / 9.0) : 0.0), c)
+                                     * true_falloff(x, y) * std::exp2(true_ev(i));
+                state = state * 1664525u + 1013904223u;
+                const double level =
+                    255.0 * std::pow(std::min(light, 1.0), 1.0 / gamma_of_camera) + (state >> 24) / 256.0;
+                frame.pixels[y * frame.row_bytes + 3 * x + c] = static_cast<uint8_t>(std::min(level, 255.0));
+            }
+    return frame;
+}
+
+std::string frame_name(uint32_t i) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%05u.png", i);
+    return name;
+}
+
+// OUT/images with the frames and OUT/times.txt, with exposure times if `has_times`.
+void write_frames(const std::string &name, uint32_t count, double step, bool has_times) {
+    static const Wall wall;
+    fs::create_directories(folder / name / "images");
+    std::ofstream times(in_folder(name) + "/times.txt");
+    for (uint32_t i = 0; i < count; i++) {
+        write_picture(in_folder(name) + "/images/" + frame_name(i), rendered(wall, i, step));
+        times << i << " " << i / 25.0;
+        if (has_times) times << " " << 10.0 * std::exp2(true_ev(i));
+        times << "\n";
+    }
+}
+
+std::vector<std::vector<double>> numbers_in(const std::string &path) {
+    std::vector<std::vector<double>> lines;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        lines.emplace_back();
+        for (double value; words >> value;) lines.back().push_back(value);
+    }
+    return lines;
+}
+
+// The largest error of the exposures in times.txt, EV.
+double exposure_error(const std::string &out, uint32_t count) {
+    const auto lines = numbers_in(in_folder(out) + "/times.txt");
+    assert_int_equal(lines.size(), count);
+    double sum = 0.0, largest = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(lines[i].size(), 3);
+        sum += std::log2(lines[i][2]) - true_ev(i);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        largest = std::max(largest, std::abs(std::log2(lines[i][2]) - true_ev(i) - sum / count));
+    return largest;
+}
+
+void assert_model(const std::string &out) {
+    std::vector<double> response;
+    for (const auto &line : numbers_in(in_folder(out) + "/pcalib.txt"))
+        response.insert(response.end(), line.begin(), line.end());
+    assert_int_equal(response.size(), 256);
+    for (size_t i = 1; i < response.size(); i++) assert_true(response[i] > response[i - 1]);
+    for (const size_t level : {size_t(60), size_t(120), size_t(180)})
+        assert_close(255.0 * std::pow(response[level] / response[255], 1.0 / gamma_of_camera), double(level), 6.0);
+    const Picture map = read_picture(in_folder(out) + "/vignette.png");
+    assert_true(map.width == width && map.height == height && map.sample == LENSPROF_SAMPLE_U16);
+    for (const uint32_t x : {0u, 40u, width / 2, width - 1}) {
+        const double found = sample_value(map.sample, &map.pixels[30 * map.row_bytes], x);
+        assert_close(found, true_falloff(x, 30), 0.03);
+    }
+}
+
+// Response, falloff and exposures of a folder as cameras of visual odometry record it.
+void test_folder(void **) {
+    if (!can_read_video()) skip();
+    const Json json = json_of(
+        {"calibrate", in_folder("moving"), "-o", in_folder("out"), "--frames", in_folder("levelled"), "--json"});
+    assert_int_equal(json["clip"]["measured"].get<int>(), frames);
+    assert_int_equal(json["clip"]["segments"].get<int>(), 1);
+    assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");
+    assert_true(exposure_error("out", frames) < 0.04);
+    assert_model("out");
+    // The same wall at different exposures looks the same in levelled frames.
+    const Picture first = read_picture(in_folder("levelled") + "/frame_00010.png"),
+                  later = read_picture(in_folder("levelled") + "/frame_00014.png");
+    double difference = 0.0;
+    size_t count = 0;
+    for (uint32_t y = 60; y < 180; y++)
+        for (uint32_t x = 60; x < 240; x++, count++) {
+            const double y_moved = y + 15.0 * (std::sin(9 / 9.0) - std::sin(13 / 9.0));
+            difference += later.pixels[size_t(std::lround(y_moved)) * later.row_bytes + 3 * (x - 36)]
+                          - double(first.pixels[y * first.row_bytes + 3 * x]);
+        }
+    assert_close(difference / double(count), 0.0, 2.0);
+}
+
+void test_video(void **) {
+    if (!can_read_video()) skip();
+    const std::string clip = in_folder("clip.mkv");
+    if (std::system(("ffmpeg -y -loglevel error -framerate 25 -i '" + in_folder("moving")
+                     + "/images/%05d.png' -c:v ffv1 -pix_fmt yuv444p '" + clip + "' </dev/null >/dev/null 2>&1")
+                        .c_str()))
+        skip();
+    const std::string text = must_exit(done, {"calibrate", clip, "-o", in_folder("seen"), "--no-store", "--times",
+                                              in_folder("moving") + "/times.txt"});
+    assert_true(contains(text, "48 frames of 320 x 240 pixels, 48 measured"));
+    assert_true(exposure_error("seen", frames) < 0.04);
+    assert_model("seen");
+    // Every other frame.
+    const Outcome unknown = run_words({"calibrate", clip, "-o", in_folder("part"), "--fps", "12.5"});
+    assert_int_equal(unknown.code, done);
+    assert_int_equal(numbers_in(in_folder("part") + "/times.txt").size(), frames / 2);
+    assert_true(contains(unknown.err, "the exposure times are unknown; the exponent"));
+    assert_true(contains(unknown.err, "states no camera, so that no profile is stored"));
+}
+
+void test_refusals(void **) {
+    if (!can_read_video()) skip();
+    write_frames("still", 12, 0.0, false);
+    const Outcome still = run_words({"calibrate", in_folder("still"), "-o", in_folder("nothing")});
+    assert_int_equal(still.code, not_usable);
+    assert_true(contains(still.err, "does not move in the first 12 frames"));
+    assert_true(contains(still.err, "`lensprof deflicker`"));
+    assert_false(fs::exists(in_folder("nothing")));
+    std::ofstream(in_folder("few.txt")) << "0 0.0 10\n1 0.04 11\n";
+    write_frames("brief", 12, 9.0, false);
+    const Outcome few =
+        run_words({"calibrate", in_folder("brief"), "-o", in_folder("nothing"), "--times", in_folder("few.txt")});
+    assert_int_equal(few.code, unreadable);
+    assert_true(contains(few.err, "few.txt: has 2 lines, but the clip has 12 frames"));
+    for (const Words &option : {Words{"--moving"}, {"--fps", "5"}, {"--frames", in_folder("levelled")}})
+        assert_true(
+            contains(run_words(Words{"calibrate", in_folder("few.txt"), "-o", in_folder("nothing")} + option).err,
+                     option[0] + ": needs one video"));
+}
+
+int set_up(void **state) {
+    if (make_folder(state) != 0) return 1;
+    write_frames("moving", frames, 9.0, true);
+    return 0;
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_video),
+        cmocka_unit_test(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
+}
