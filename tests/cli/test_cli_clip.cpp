@@ -173,6 +173,31 @@ void test_video(void **) {
     assert_true(contains(unknown.err, "states no camera, so that no profile is stored"));
 }
 
+// A stationary camera: levelled frames have one brightness.
+void test_deflicker(void **) {
+    if (!can_read_video()) skip();
+    write_frames("tripod", 24, 0.0, false);
+    const std::string clip = in_folder("tripod.mkv");
+    if (std::system(("ffmpeg -y -loglevel error -framerate 25 -i '" + in_folder("tripod")
+                     + "/images/%05d.png' -c:v ffv1 -pix_fmt yuv444p '" + clip + "' </dev/null >/dev/null 2>&1")
+                        .c_str()))
+        skip();
+    must_exit(done, {"deflicker", clip, "-o", in_folder("even"), "--to", "mean", "--response", "gamma:2.2"});
+    const auto middle_of = [&](uint32_t number) {
+        char name[32];
+        std::snprintf(name, sizeof name, "/frame_%05u.png", number);
+        const Picture frame = read_picture(in_folder("even") + name);
+        double sum = 0.0;  // of pixels that no frame saturates
+        for (uint32_t y = 180; y < 240; y++)
+            for (uint32_t x = 0; x < 60; x++) sum += frame.pixels[y * frame.row_bytes + 3 * x];
+        return sum / (60 * 60);
+    };
+    for (const uint32_t number : {6u, 13u, 24u}) assert_close(middle_of(number), middle_of(1), 1.5);
+    const Outcome moving = run_words({"deflicker", in_folder("clip.mkv"), "-o", in_folder("uneven")});
+    assert_int_equal(moving.code, not_usable);
+    assert_true(contains(moving.err, "`lensprof calibrate`"));
+}
+
 void test_refusals(void **) {
     if (!can_read_video()) skip();
     write_frames("still", 12, 0.0, false);
@@ -205,6 +230,7 @@ int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_folder),
         cmocka_unit_test(test_video),
+        cmocka_unit_test(test_deflicker),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/correct/deflicker_clip.hpp"
 #include "cli/correct/exposure_chart.hpp"
 #include "cli/correct/model_options.hpp"
 #include "cli/program/commands.hpp"
@@ -21,6 +22,7 @@
 #include "photo/base/paths.hpp"
 #include "photo/deflicker/offsets.hpp"
 #include "photo/report/report.hpp"
+#include "photo/video/video.hpp"
 
 namespace lensprof {
 namespace {
@@ -66,7 +68,7 @@ void read_region(const std::string &word, std::vector<uint32_t> &region) {
 }
 
 void declare(Command &command, DeflickerOptions &o) {
-    command.files("FILE", o.files, "frames of one stationary camera, or a folder of them");
+    command.files("FILE", o.files, "frames of one stationary camera, a folder of them, or one video");
     command.folder(
         "-o,--output", o.output,
         "folder for the copies and the table; default deflickered. Of xmp and pp3: default next to the frames");
@@ -334,6 +336,12 @@ int run(const DeflickerOptions &o, Streams &streams) {
                       "--keep-light and --to exclude each other: both choose the exposure of "
                       "the frames; give one of them");
     if (!o.chart.empty()) check_chart_name(o.chart);
+    if (o.files.size() == 1 && is_video(o.files[0])) {
+        MeasureOptions of_clip = o.measure;
+        of_clip.srgb = response_of_word("srgb");
+        return deflicker_clip({o.files[0], o.folder(), o.to, o.chart, o.window_s, of_clip, o.json, o.progress},
+                              streams);
+    }
     Progress progress(streams, o.progress);
     Levels levels;
     levels.sequence = list_frames(o.files, o.folder(), progress);
