@@ -5,6 +5,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/calibrate/clip_files.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"

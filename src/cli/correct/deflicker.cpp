@@ -336,12 +336,9 @@ int run(const DeflickerOptions &o, Streams &streams) {
                       "--keep-light and --to exclude each other: both choose the exposure of "
                       "the frames; give one of them");
     if (!o.chart.empty()) check_chart_name(o.chart);
-    if (o.files.size() == 1 && is_video(o.files[0])) {
-        MeasureOptions of_clip = o.measure;
-        of_clip.srgb = response_of_word("srgb");
-        return deflicker_clip({o.files[0], o.folder(), o.to, o.chart, o.window_s, of_clip, o.json, o.progress},
+    if (o.files.size() == 1 && is_video(o.files[0]))
+        return deflicker_clip({o.files[0], o.folder(), o.to, o.chart, o.window_s, o.measure, o.json, o.progress},
                               streams);
-    }
     Progress progress(streams, o.progress);
     Levels levels;
     levels.sequence = list_frames(o.files, o.folder(), progress);

@@ -113,7 +113,9 @@ void write_levelled(const DeflickerClip &o, const lensprof_response &response, c
 int deflicker_clip(const DeflickerClip &o, Streams &streams) {
     Progress events(streams, o.progress);
     if (!o.chart.empty()) check_output_file(o.chart);
-    const lensprof_response &response = o.measure.response ? *o.measure.response : o.measure.srgb;
+    lensprof_response response;
+    lensprof_response_set_srgb(&response);
+    if (o.measure.response) response = *o.measure.response;
     MeasuredSequence measured;
     measure_clip(o, response, measured, events);
     double window_s = 0.0;
