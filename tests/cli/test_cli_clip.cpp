@@ -137,6 +137,7 @@ void test_folder(void **) {
     assert_int_equal(json["clip"]["measured"].get<int>(), frames);
     assert_int_equal(json["clip"]["segments"].get<int>(), 1);
     assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");
+    assert_true(json["clip"]["times_rms_ev"].get<double>() < 0.02);
     assert_true(exposure_error("out", frames) < 0.04);
     assert_model("out");
     // The same wall at different exposures looks the same in levelled frames.
