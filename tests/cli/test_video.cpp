@@ -160,6 +160,9 @@ void test_cut_files(void **) {
     cut_to(unfinished, 0.5);
     assert_failure(LENSPROF_ERROR_READ, "unfinished.mp4: is a video (MP4) that cannot be opened",
                    [&] { frames_of(unfinished); });
+    const std::string mkv = encode("cut.mkv", "-c:v mjpeg -q:v 2");
+    cut_to(mkv, 0.3);
+    assert_true(frames_before_cut(mkv) < 12);
     const std::string avi = encode("cut.avi", "-c:v mjpeg -q:v 2");
     cut_to(avi, 0.4);
     assert_true(frames_before_cut(avi) < 12);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/correct/exposure_chart.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/progress.hpp"

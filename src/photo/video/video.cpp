@@ -146,6 +146,7 @@ private:
     uint64_t read_ = 0;
     int64_t first_time_ = 0;
     double seconds_ = 0.0, frame_s_ = 0.0;
+    double packets_end_s_ = 0.0;  // of the last packet that was read
 };
 
 VideoReader::Decoder::Decoder(const std::string &path) : path_(path) {
@@ -199,9 +200,14 @@ void VideoReader::Decoder::describe() {
     first_time_ = frame_->best_effort_timestamp;
 }
 
-// Whether the index of the file names packets beyond its end.
+// Whether the index of the file names packets beyond its end, or its header a later one than the last.
 bool VideoReader::Decoder::is_cut() const {
+    constexpr double tolerance_s = 0.5;
     AVStream *stream = file_->streams[stream_];
+    const bool states_duration = file_->nb_streams == 1 && file_->duration > 0
+                                 && file_->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
+    const double stated_s = states_duration ? double(file_->duration) / AV_TIME_BASE : 0.0;
+    if (packets_end_s_ > 0.0 && packets_end_s_ < stated_s - std::max(tolerance_s, 3.0 * frame_s_)) return true;
     const int count = avformat_index_get_entries_count(stream);
     const int64_t size = file_->pb ? avio_size(file_->pb) : -1;
     if (count < 1 || size < 0) return false;
@@ -221,6 +227,9 @@ void VideoReader::Decoder::send() {
         }
         if (code < 0) fail_cut(text_of_error(code));
         const bool is_of_stream = packet_->stream_index == stream_;
+        if (is_of_stream && packet_->pts != AV_NOPTS_VALUE)
+            packets_end_s_ = std::max(
+                packets_end_s_, double(packet_->pts + packet_->duration) * av_q2d(file_->streams[stream_]->time_base));
         const bool is_corrupt = packet_->flags & AV_PKT_FLAG_CORRUPT;
         const int sent = is_of_stream && !is_corrupt ? avcodec_send_packet(codec_.get(), packet_.get()) : 0;
         av_packet_unref(packet_.get());
