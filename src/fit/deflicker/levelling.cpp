@@ -49,7 +49,7 @@ void smooth_all(const FrameChain &chain, const lensprof_deflicker_target &target
     const bool is_light = target.to == LENSPROF_TO_LIGHT;
     for (size_t n = 0; is_light && n < curve.frames.size(); n++)
         curve.main[n] -= chain.frames()[curve.frames[n]].settings_ev;
-    if (!(curve.times.back() > curve.times.front()))  // times that say nothing
+    if (!(curve.times.back() > curve.times.front()))  // equal times
         std::iota(curve.times.begin(), curve.times.end(), 0.0);
     const double window = target.window_s > 0.0 ? target.window_s : best_window(curve.times, curve.main);
     longest = std::max(longest, std::min(window, curve.times.back() - curve.times.front()));
