@@ -7,7 +7,7 @@ namespace {
 
 void test_all_commands_are_walked(void **) {
     const std::vector<Words> commands = all_commands();
-    assert_int_equal(commands.size(), 15 + 11);
+    assert_int_equal(commands.size(), 16 + 11);
     size_t options = 0;
     for (const Words &command : commands)
         options += options_with_values(must_exit(done, command + Words{"--help-all"})).size();
