@@ -10,7 +10,7 @@ using namespace picture_files;
 
 namespace {
 
-constexpr uint32_t width = 96, height = 64;
+constexpr uint32_t width = 96;  // of 64 rows
 
 bool has_ffmpeg = false;
 
