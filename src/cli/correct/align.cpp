@@ -292,7 +292,8 @@ int align(const Options &o, Streams &streams) {
     const std::string &item = o.pto.empty() ? scene.files[0] : o.pto;
     if (!fitted.corrects()) {
         if (o.pto.empty() && !verdict.findings.empty())
-            verdict.findings[0].text += "; frames of a moving camera need --project";
+            verdict.findings[0].text +=
+                "; frames of a moving camera need --project, and `lensprof deflicker` levels those of nearly one exposure";
         print_message(streams, item + ": not usable: " + verdict.headline() + "; nothing written");
     } else if (fitted.result.usable) {
         report_findings(verdict, item, progress);
