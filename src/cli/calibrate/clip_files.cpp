@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <sstream>
 
 #include "cli/correct/exposure_chart.hpp"
+#include "cli/profiles/foreign_file.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
@@ -142,28 +142,13 @@ std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip,
                                      OutputFiles &outputs) {
     const auto profile = fit.profile();
     const std::string response = path_in(folder, "pcalib.txt"), falloff = path_in(folder, "vignette.png");
-    const lensprof_profile *const all[] = {profile.get()};
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = LENSPROF_FORMAT_PCALIB;
-    outputs.add(response, written(response, [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-                    return lensprof_export(all, 1, &options, data, capacity, count, error);
-                }));
-    Picture map;
-    map.width = map.frame_width = clip.info.width, map.height = map.frame_height = clip.info.height;
-    map.sample = LENSPROF_SAMPLE_U16, map.layout = LENSPROF_LAYOUT_GREY;
-    map.row_bytes = size_t(2) * map.width;
-    map.pixels.resize(map.row_bytes * map.height);
-    std::vector<float> values(size_t(map.width) * map.height);
-    lensprof_error error{};
-    check(lensprof_map_write(profile.get(), map.width, map.height, map.width, map.height, 1, LENSPROF_MAP_ATTENUATION,
-                             values.data(), &error),
-          falloff, &error);
-    for (size_t i = 0; i < values.size(); i++) {
-        const auto level = static_cast<uint16_t>(std::clamp(std::lround(65535.0f * values[i]), 1L, 65535L));
-        std::memcpy(&map.pixels[2 * i], &level, sizeof level);
-    }
-    write_picture(falloff, map);
+    outputs.add(response, exported(response, {profile.get()}, options));
+    ForeignOptions map;
+    map.width = clip.info.width, map.height = clip.info.height;
+    write_foreign(format_to_write(falloff, ""), falloff, map, {profile.get()}, {});
     return {response, falloff};
 }
 

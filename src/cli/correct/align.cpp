@@ -15,9 +15,8 @@
 #include "cli/report/findings.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
-#include "photo/calibration/known_exposures.hpp"
 #include "photo/calibration/profile_store.hpp"
-#include "photo/calibration/still_fit.hpp"
+#include "photo/calibration/sequence_fit.hpp"
 #include "photo/correct/correction.hpp"
 #include "photo/correct/merged.hpp"
 #include "photo/deflicker/long_sequence.hpp"
@@ -29,7 +28,6 @@
 #include "photo/report/falloff.hpp"
 #include "photo/scene/exposures.hpp"
 #include "photo/scene/hugin_project.hpp"
-#include "photo/scene/sampling.hpp"
 #include "photo/scene/scene.hpp"
 #include "photo/scene/scene_pictures.hpp"
 #include "photo/scene/static_camera.hpp"
@@ -119,41 +117,14 @@ struct FittedSequence {
     std::vector<double> white_shares;  // per picture
 };
 
-FittedSequence fit_still_sequence(const Options &o, const Scene &scene, Progress &progress) {
-    if (scene.files.size() > long_sequence_frames) {
+FittedSequence fit_frames(const Options &o, const Scene &scene, Progress &progress) {
+    if (!scene.document && scene.files.size() > long_sequence_frames) {
         LongSequence found = fit_long_sequence(scene.files, o.fit, o.pixels, progress);
         return {std::move(found.fitted), std::move(found.names), std::move(found.white_shares)};
     }
     std::vector<SamplePicture> pictures;
-    FittedSequence found{fit_still(scene, o.fit, o.pixels, progress, &pictures), scene.names, {}};
+    FittedSequence found{fit_sequence(scene, o.fit, o.pixels, progress, &pictures), scene.names, {}};
     for (const SamplePicture &picture : pictures) found.white_shares.push_back(white_share(picture.picture));
-    return found;
-}
-
-FittedSequence fit_sequence(const Options &o, const Scene &scene, Progress &progress) {
-    if (!scene.document) return fit_still_sequence(o, scene, progress);
-    FittedSequence found;
-    found.names = scene.names;
-    FitInput input;
-    input.options = fit_options(o.fit);
-    input.options.free &= scene.images[0].free;
-    input.options.reference = scene.reference;
-    auto pictures = read_pictures(scene, o.pixels.max_side, progress);
-    input.options.channels = channel_count(pictures);
-    lensprof_sample_options sampling;
-    lensprof_sample_options_init(&sampling);
-    sampling.pairs = o.pixels.pairs;
-    sampling.seed = o.pixels.seed;
-    std::vector<lensprof_link> links;
-    input.pairs = sample_pairs(scene, pictures, sampling, {}, progress, &links);
-    input.options.links = links.data();
-    input.options.link_count = static_cast<uint32_t>(links.size());
-    input.images = fit_images(scene);
-    std::vector<PictureMetadata> metadata;
-    for (const std::string &file : scene.files) metadata.push_back(read_metadata(file));
-    add_known_exposures(o.fit, scene, metadata, input.images, progress);
-    for (const SamplePicture &picture : pictures) found.white_shares.push_back(white_share(picture.picture));
-    found.fitted = fit(input, scene.reference, o.pto, progress, nullptr);
     return found;
 }
 
@@ -267,7 +238,7 @@ int align(const Options &o, Streams &streams) {
     if (scene.document || scene.files.size() <= long_sequence_frames) check_pictures(scene, o.pixels.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams, o.progress);
-    const FittedSequence found = fit_sequence(o, scene, progress);
+    const FittedSequence found = fit_frames(o, scene, progress);
     const Fitted &fitted = found.fitted;
     const std::vector<double> &white_shares = found.white_shares;
     Verdict verdict = fitted.verdict;

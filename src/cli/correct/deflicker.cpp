@@ -121,12 +121,6 @@ uint32_t frame_named(const std::string &word, const FrameSequence &sequence) {
                   "--to " + word + ": is neither smooth, mean, first, a table (.csv) nor the name of a frame");
 }
 
-uint32_t first_levelled(const std::vector<lensprof_deflicker_frame> &frames) {
-    for (uint32_t i = 0; i < frames.size(); i++)
-        if (frames[i].state == LENSPROF_FRAME_LEVELLED) return i;
-    return 0;
-}
-
 // The target; `curve` must live as long as it.
 lensprof_deflicker_target choose_target(const DeflickerOptions &o, const Levels &levels, std::vector<double> &curve) {
     lensprof_deflicker_target target;

@@ -23,20 +23,8 @@ std::string levelled_name(size_t index) { return format("frame_%05zu.png", index
 void measure_clip(const DeflickerClip &o, const lensprof_response &response, MeasuredSequence &measured,
                   Events &events) {
     VideoReader reader(o.clip);
-    lensprof_deflicker_options options;
-    lensprof_deflicker_options_init(&options);
-    options.responses = 1, options.response = &response;
-    options.rows = o.measure.rows;
-    if (const auto &region = o.measure.region_px; !region.empty()) {
-        const double width = reader.info().width, height = reader.info().height;
-        options.region[0] = region[0] / width, options.region[1] = region[1] / height;
-        options.region[2] = std::min(1.0, (region[0] + region[2]) / width);
-        options.region[3] = std::min(1.0, (region[1] + region[3]) / height);
-    }
+    measured.deflicker = new_deflicker(o.measure, {response}, {reader.info().width, reader.info().height});
     lensprof_error error{};
-    lensprof_deflicker *deflicker = nullptr;
-    check(lensprof_deflicker_create(&options, &deflicker, &error), o.clip, &error);
-    measured.deflicker.reset(deflicker);
     uint32_t count = 0;
     for (VideoFrame frame; reader.next(frame); count++) {
         stop_if_cancelled();
@@ -45,27 +33,20 @@ void measure_clip(const DeflickerClip &o, const lensprof_response &response, Mea
         lensprof_deflicker_facts_init(&facts);
         facts.seconds = frame.seconds;
         const lensprof_image view = frame.picture.view();
-        check(lensprof_deflicker_add(deflicker, &view, &facts, &error), o.clip, &error);
+        check(lensprof_deflicker_add(measured.deflicker.get(), &view, &facts, &error), o.clip, &error);
         events.update_items("measuring", count, static_cast<uint32_t>(reader.info().frames));
     }
     events.clear();
     if (count < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, o.clip + ": has only one frame; give a clip",
                       LENSPROF_REASON_FEW_PAIRS);
-    lensprof_deflicker_result_init(&measured.result);
-    check(lensprof_deflicker_measure(deflicker, &measured.result, &error), o.clip, &error);
+    take_measurement(o.clip, count, measured);
     if (measured.result.moving)
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       o.clip
                           + format(": the camera moves by %.1f %% of the frame from frame to frame; use `lensprof "
                                    "calibrate`, which levels frames of a moving camera",
                                    100.0 * measured.result.motion));
-    for (uint32_t i = 0; i < count; i++) {
-        lensprof_deflicker_frame frame;
-        lensprof_deflicker_frame_init(&frame);
-        check(lensprof_deflicker_frame_at(deflicker, i, &frame, &error), o.clip, &error);
-        measured.frames.push_back(frame);
-    }
 }
 
 lensprof_deflicker_target clip_target(const DeflickerClip &o, const MeasuredSequence &measured) {
@@ -76,9 +57,7 @@ lensprof_deflicker_target clip_target(const DeflickerClip &o, const MeasuredSequ
         target.to = LENSPROF_TO_MEAN;
     } else if (o.to == "first") {
         target.to = LENSPROF_TO_FRAME;
-        while (target.frame + 1 < measured.frames.size()
-               && measured.frames[target.frame].state != LENSPROF_FRAME_LEVELLED)
-            target.frame++;
+        target.frame = first_levelled(measured.frames);
     } else if (!o.to.empty() && o.to != "smooth") {
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": frames of a video are levelled to smooth, mean or "
                                                              "first; give one of them");

@@ -319,13 +319,10 @@ std::string response_file(const BracketOptions &o) { return (std::filesystem::pa
 std::string pcalib_of(const BuildReport &report, const std::string &file) {
     auto profile = new_profile();
     profile->response[0] = report.fit.response;
-    const lensprof_profile *const all[] = {profile.get()};
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = LENSPROF_FORMAT_PCALIB;
-    return written(file, [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(all, 1, &options, data, capacity, count, error);
-    });
+    return exported(file, {profile.get()}, options);
 }
 
 // Adds pcalib.txt to the outputs. A sweep is without falloff, which the readers of pcalib.txt want as well.

@@ -66,15 +66,6 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     write_picture(path, picture);
 }
 
-std::string bytes_of(const std::string &path, const lensprof_export_options &options,
-                     const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
-    const auto write = [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(profiles.data(), static_cast<uint32_t>(profiles.size()), &options, data, capacity, count,
-                               error);
-    };
-    return written(path, write, names);
-}
-
 lensprof_export_options export_options_of(const ForeignRule &rule, const ForeignOptions &o) {
     lensprof_export_options options;
     lensprof_export_options_init(&options);
@@ -98,7 +89,7 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
                       path + ": " + rule.name + " is written into a picture; export one profile with -o FILE");
     if (!rule.is_many) require_single_profile(path, rule, profiles.size());
     if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) require_frame(path, rule, o);
-    return bytes_of(path, export_options_of(rule, o), profiles, names);
+    return exported(path, profiles, export_options_of(rule, o), names);
 }
 
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,

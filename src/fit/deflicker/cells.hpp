@@ -34,7 +34,6 @@ struct FrameGrid {
     FrameGrid(const lensprof_image &frame, const double *region);
 
     size_t cells() const { return size_t(columns) * rows; }
-    double cell_px() const { return double(right - left) / columns; }
 };
 
 struct FrameCells {

@@ -22,6 +22,15 @@ uint32_t reason_of(lensprof_status status) {
 
 }  // namespace
 
+std::string exported(const std::string &item, const std::vector<const lensprof_profile *> &profiles,
+                     const lensprof_export_options &options, const std::vector<std::string> &names) {
+    const auto write = [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_export(profiles.data(), static_cast<uint32_t>(profiles.size()), &options, data, capacity, count,
+                               error);
+    };
+    return written(item, write, names);
+}
+
 void check(lensprof_status status, const std::string &item, const lensprof_error *error) {
     check_named(status, item, error ? *error : lensprof_error{}, LENSPROF_ITEM_NONE, {});
 }

@@ -35,6 +35,10 @@ std::string written(const std::string &item, Write write, const std::vector<std:
     return text;
 }
 
+// The bytes of a file with these profiles, by lensprof_export. `names` are theirs in a Failure.
+std::string exported(const std::string &item, const std::vector<const lensprof_profile *> &profiles,
+                     const lensprof_export_options &options, const std::vector<std::string> &names = {});
+
 struct StoreClose {
     void operator()(lensprof_store *store) const { lensprof_store_close(store); }
 };

@@ -94,11 +94,7 @@ std::string lens_file_text(const std::vector<const lensprof_profile *> &profiles
         options.into = has_text ? text.data() : nullptr;
         options.into_size = text.size();
         options.cost_ev = ev.data();
-        const auto write = [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-            return lensprof_export(chosen.data(), static_cast<uint32_t>(chosen.size()), &options, data, capacity, count,
-                                   error);
-        };
-        text = written(into.empty() ? "lens file" : into, write, chosen_names);
+        text = exported(into.empty() ? "lens file" : into, chosen, options, chosen_names);
         has_text = true;
         for (size_t i = 0; i < members.size(); i++) cost.ev[members[i]] = ev[i];
     }

@@ -26,11 +26,7 @@ Json tables_of(const lensprof_profile &profile, double aspect, const SensorTable
     options.width = static_cast<uint32_t>(std::lround(frame_side * std::min(aspect, 1.0)));
     options.height = static_cast<uint32_t>(std::lround(frame_side * std::min(1.0 / aspect, 1.0)));
     options.columns = tables.columns, options.rows = tables.rows;
-    const lensprof_profile *one = &profile;
-    const std::string text = written("tables", [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(&one, 1, &options, data, capacity, count, error);
-    });
-    return Json::parse(text)[algorithm];
+    return Json::parse(exported("tables", {&profile}, options))[algorithm];
 }
 
 // How far two tables of ratios differ from cell to cell: libcamera's tuning tool derives sigma from it, the mean over

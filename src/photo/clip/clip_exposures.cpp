@@ -9,6 +9,7 @@
 #include <Eigen/SparseCore>
 
 #include "fit/base/joined_sets.hpp"
+#include "fit/base/quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -59,20 +60,15 @@ struct Difference {
 // Tukey's mean: differences beyond 4.7 standard deviations have no weight.
 bool robust_mean(std::vector<Difference> &differences, double &mean, double &variance) {
     if (differences.size() < least_shared) return false;
-    const auto middle_of = [](std::vector<double> &values) {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    };
     std::vector<double> values;
     for (const Difference &difference : differences) values.push_back(difference.ev);
-    mean = middle_of(values);
+    mean = upper_median(values);
     double scale = 0.0, sum = 0.0, squares = 0.0;
     for (int round = 0; round < 8; round++) {
         if (round < 2) {
             values.clear();
             for (const Difference &difference : differences) values.push_back(std::abs(difference.ev - mean));
-            scale = std::max(1.4826 * middle_of(values), 0.004);
+            scale = std::max(1.4826 * upper_median(values), 0.004);
         }
         double total = 0.0;
         sum = squares = 0.0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/quantile.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -23,12 +25,7 @@ Common common_of(const ClipFrame &first, const ClipFrame &second) {
     for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
         if (is_usable(a) && is_usable(b)) steps.push_back(usual_gamma * std::log2(b.value[1] / a.value[1]));
     });
-    Common common{steps.size(), 0.0};
-    if (steps.empty()) return common;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    common.step_ev = *middle;
-    return common;
+    return {steps.size(), upper_median(steps)};
 }
 
 // Consecutive keyframes that share scene points.

@@ -44,10 +44,7 @@ void write_opcodes_as(const std::string &path, const std::string &path_out, lens
     // after demosaicing there are three channels; linear raw images and plain TIFF have three from the start
     if (lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
-    const lensprof_profile *profiles[] = {&profile};
-    const std::string bytes = written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(profiles, 1, &options, data, capacity, count, error);
-    });
+    const std::string bytes = exported(path, {&profile}, options);
     write_opcode_list(path, path_out, tag_opcode_list3, {bytes.begin(), bytes.end()});
 }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "photo/calibration/still_fit.hpp"
+#include "photo/calibration/sequence_fit.hpp"
 #include "photo/deflicker/measure.hpp"
 #include "photo/scene/static_camera.hpp"
 
@@ -33,7 +33,7 @@ LongSequence fit_long_sequence(const std::vector<std::string> &files, const FitO
     found.names = frames_of_all_exposures(sequence, measured.frames, kFitFrames);
     Scene scene = static_scene(found.names, true);
     scene.reference = 0;
-    found.fitted = fit_still(scene, options, pixels, events);
+    found.fitted = fit_sequence(scene, options, pixels, events);
     found.fitted.exposures.assign(files.size(), {NAN, {1.0, 1.0, 1.0}});
     if (!found.fitted.corrects()) return found;
     MeasureOptions with_response;

@@ -10,7 +10,7 @@
 #include "photo/base/databases.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
-#include "photo/calibration/still_fit.hpp"
+#include "photo/calibration/sequence_fit.hpp"
 #include "photo/calibration/stored_prior.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/scene/static_camera.hpp"
@@ -31,24 +31,6 @@ struct Candidate {
     std::vector<lensprof_response> response;  // 1 or 3
     std::string name;
 };
-
-Deflicker new_deflicker(const MeasureOptions &o, const Candidate &candidate, const PictureSize &size) {
-    lensprof_deflicker_options options;
-    lensprof_deflicker_options_init(&options);
-    options.response = candidate.response.data();
-    options.responses = static_cast<uint32_t>(candidate.response.size());
-    options.rows = o.rows;
-    if (!o.region_px.empty()) {
-        const double w = size.width, h = size.height;
-        options.region[0] = o.region_px[0] / w, options.region[1] = o.region_px[1] / h;
-        options.region[2] = std::min((o.region_px[0] + o.region_px[2]) / w, 1.0);
-        options.region[3] = std::min((o.region_px[1] + o.region_px[3]) / h, 1.0);
-    }
-    lensprof_deflicker *made = nullptr;
-    lensprof_error error{};
-    check(lensprof_deflicker_create(&options, &made, &error), "deflicker", &error);
-    return Deflicker(made);
-}
 
 void add_frame(const Frame &frame, const Picture &picture, lensprof_deflicker &deflicker) {
     lensprof_deflicker_facts facts;
@@ -207,7 +189,7 @@ double tone_error_of(const MeasureOptions &o, const Candidate &candidate, const 
                      Events &events) {
     std::vector<Frame> untimed;  // neighbours in the test need not be neighbours in time
     for (const Frame *frame : frames) untimed.push_back({frame->file, frame->metadata});
-    const Deflicker deflicker = new_deflicker(o, candidate, frames[0]->metadata.size);
+    const Deflicker deflicker = new_deflicker(o, candidate.response, frames[0]->metadata.size);
     const std::vector<const Frame *> all = pointers_to(untimed);
     Reading(o, all, events).run(*deflicker, false);
     const lensprof_deflicker_result result = result_of(*deflicker, frames[0]->file);
@@ -221,7 +203,7 @@ std::optional<Candidate> fitted_candidate(const FrameSequence &sequence,
         const std::vector<std::string> files = frames_of_all_exposures(sequence, measured, kFittedFrames);
         Scene scene = static_scene(files, true);
         scene.reference = 0;
-        const Fitted fitted = fit_still(scene, {}, {}, events);
+        const Fitted fitted = fit_sequence(scene, {}, {}, events);
         if (!fitted.corrects()) return std::nullopt;
         return Candidate{{fitted.result.response}, "response fitted to " + counted(files.size(), "frame")};
     } catch (const Failure &failure) {
@@ -242,7 +224,7 @@ std::vector<lensprof_deflicker_frame> frames_of(const lensprof_deflicker &deflic
 // Measures all frames with one response, and leaves out those that cannot be read.
 void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_checked, FrameSequence &sequence,
                   MeasuredSequence &measured, Events &events) {
-    measured.deflicker = new_deflicker(o, candidate, sequence.frames[0].metadata.size);
+    measured.deflicker = new_deflicker(o, candidate.response, sequence.frames[0].metadata.size);
     const std::vector<const Frame *> all = pointers_to(sequence.frames);
     Reading reading(o, all, events);
     reading.run(*measured.deflicker, is_checked);
@@ -260,8 +242,7 @@ void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_c
                       (sequence.left_out.empty() ? std::string() : sequence.left_out[0].reason + "; ")
                           + "fewer than two frames can be read",
                       LENSPROF_REASON_FEW_PAIRS);
-    measured.result = result_of(*measured.deflicker, sequence.frames[0].file);
-    measured.frames = frames_of(*measured.deflicker, sequence.frames.size());
+    take_measurement(sequence.frames[0].file, sequence.frames.size(), measured);
     measured.response = candidate.name;
     auto model = std::shared_ptr<lensprof_profile>(new_profile());
     model->responses = static_cast<uint32_t>(candidate.response.size());
@@ -270,6 +251,36 @@ void measure_with(const MeasureOptions &o, const Candidate &candidate, bool is_c
 }
 
 }  // namespace
+
+Deflicker new_deflicker(const MeasureOptions &o, const std::vector<lensprof_response> &response,
+                        const PictureSize &size) {
+    lensprof_deflicker_options options;
+    lensprof_deflicker_options_init(&options);
+    options.response = response.data();
+    options.responses = static_cast<uint32_t>(response.size());
+    options.rows = o.rows;
+    if (!o.region_px.empty()) {
+        const double w = size.width, h = size.height;
+        options.region[0] = o.region_px[0] / w, options.region[1] = o.region_px[1] / h;
+        options.region[2] = std::min((o.region_px[0] + o.region_px[2]) / w, 1.0);
+        options.region[3] = std::min((o.region_px[1] + o.region_px[3]) / h, 1.0);
+    }
+    lensprof_deflicker *made = nullptr;
+    lensprof_error error{};
+    check(lensprof_deflicker_create(&options, &made, &error), "deflicker", &error);
+    return Deflicker(made);
+}
+
+void take_measurement(const std::string &item, size_t count, MeasuredSequence &measured) {
+    measured.result = result_of(*measured.deflicker, item);
+    measured.frames = frames_of(*measured.deflicker, count);
+}
+
+uint32_t first_levelled(const std::vector<lensprof_deflicker_frame> &frames) {
+    for (uint32_t i = 0; i < frames.size(); i++)
+        if (frames[i].state == LENSPROF_FRAME_LEVELLED) return i;
+    return 0;
+}
 
 bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
     constexpr double kStillShift = 0.002, kStillAgreeing = 0.3;  // share of the longer side; share of the cells
@@ -282,7 +293,7 @@ bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
     lensprof_response srgb;
     lensprof_response_set_srgb(&srgb);
     const MeasureOptions options;
-    const Deflicker deflicker = new_deflicker(options, {{srgb}, ""}, spread[0].metadata.size);
+    const Deflicker deflicker = new_deflicker(options, {srgb}, spread[0].metadata.size);
     const std::vector<const Frame *> all = pointers_to(spread);
     Reading reading(options, all, events);
     reading.run(*deflicker, false);

@@ -35,6 +35,15 @@ struct MeasuredSequence {
     std::vector<lensprof_exposure> curve(const lensprof_deflicker_target &target, double &window) const;
 };
 
+uint32_t first_levelled(const std::vector<lensprof_deflicker_frame> &frames);  // its index
+
+// An object for frames of this size, with the options' region and rows, and one response or three.
+std::unique_ptr<lensprof_deflicker, DeflickerDestroy>
+new_deflicker(const MeasureOptions &options, const std::vector<lensprof_response> &response, const PictureSize &size);
+
+// Sets result and frames by measuring what was added to the object; `item` is its name in a Failure.
+void take_measurement(const std::string &item, size_t count, MeasuredSequence &measured);
+
 // Whether a dozen of these frames, spread over all, show one scene from a camera that did not move; false for fewer.
 bool shows_still_camera(const std::vector<Frame> &frames, Events &events);
 

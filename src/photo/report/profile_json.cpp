@@ -22,14 +22,10 @@ Json provenance_json(const lensprof_provenance &p) {
 }
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
-    const lensprof_profile *const pointer = &profile;
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = LENSPROF_FORMAT_JSON;
-    const auto write = [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(&pointer, 1, &options, text, capacity, count, error);
-    };
-    Json json = Json::parse(written("profile as JSON", write));
+    Json json = Json::parse(exported("profile as JSON", {&profile}, options));
     json["response"]["values"] = samples_json(profile.response, profile.responses);
     if (id) json["id"] = id;
     return json;

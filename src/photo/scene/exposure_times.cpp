@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "fit/base/quantile.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
@@ -122,12 +123,11 @@ void note_unit(const std::string &path, std::vector<double> ev, Events &events) 
     constexpr double shortest_ms = 1e-3, longest_ms = 1e4;  // usual medians
     ev.erase(std::remove_if(ev.begin(), ev.end(), [](double e) { return std::isnan(e); }), ev.end());
     if (ev.empty()) return;
-    std::nth_element(ev.begin(), ev.begin() + static_cast<std::ptrdiff_t>(ev.size() / 2), ev.end());
-    const double median = std::exp2(ev[ev.size() / 2]);
-    if (median < shortest_ms || median > longest_ms)
+    const double middle = std::exp2(upper_median(ev));
+    if (middle < shortest_ms || middle > longest_ms)
         events.note(path, format("its middle exposure is %.3g, which is unusual for milliseconds; only the ratios of "
                                  "exposures are used here, but other programs may need another unit",
-                                 median));
+                                 middle));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "fit/base/quantile.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -61,13 +63,6 @@ cv::Mat with_levels_of(const cv::Mat &before, const cv::Mat &grey) {
     }
     cv::LUT(grey, table, matched);
     return matched;
-}
-
-double median_of(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // The mean variance of 7 x 7 pixels about each pixel; large where the mean is near black or white.
@@ -161,8 +156,8 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
     }
     const double half_diagonal = 0.5 * std::hypot(grey.cols, grey.rows);
     found.kept = inner ? double(kept.size()) / double(std::max(inner, kept.size())) : 0.0;
-    found.motion = median_of(motion) / half_diagonal;
-    found.travel = median_of(travel) / half_diagonal;
+    found.motion = upper_median(motion) / half_diagonal;
+    found.travel = upper_median(travel) / half_diagonal;
     if (found.kept < least_kept || kept.size() < few_corners / 2) kept.clear();
     corners = std::move(kept);
 }
