@@ -27,10 +27,10 @@ std::vector<lensprof_fit_image> keyframe_images(const ClipOptions &o, const Clip
     return images;
 }
 
-// A few of the observations of a point, far apart: the fit compares neighbours in time, which differ in light and place
-// only then. Where they begin depends on the point, so that all keyframes are used.
+// Some of the observations of a point, at even distances. Where they begin depends on the point, so that all keyframes
+// are used.
 std::vector<lensprof_observation> spread_observations(const std::vector<lensprof_observation> &all) {
-    constexpr size_t most = 8;
+    constexpr size_t most = 24;
     if (all.size() <= most) return all;
     const double golden = 0.6180339887498949 * all[0].point, shift = golden - std::floor(golden);
     std::vector<lensprof_observation> some;
@@ -58,6 +58,19 @@ std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
     return observations;
 }
 
+// Keyframes in the order of the golden ratio: the fit begins with pairs of neighbours among the observations of a point,
+// and neighbours in time differ little in light and place.
+std::vector<uint32_t> scattered(const std::vector<uint32_t> &keyframes) {
+    constexpr double golden = 0.6180339887498949;
+    std::vector<std::pair<double, uint32_t>> order;
+    for (uint32_t k = 0; k < keyframes.size(); k++)
+        order.emplace_back(golden * k - std::floor(golden * k), keyframes[k]);
+    std::sort(order.begin(), order.end());
+    std::vector<uint32_t> result;
+    for (const auto &[rank, frame] : order) result.push_back(frame);
+    return result;
+}
+
 ClipModel model_of(const Fitted &best) { return {best.response_of(0), best.falloff_of(0)}; }
 
 }  // namespace
@@ -74,7 +87,7 @@ std::unique_ptr<lensprof_profile> ClipFit::profile() const {
 ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
     ClipFit fit_of_clip;
     auto clock = std::chrono::steady_clock::now();
-    auto &keyframes = fit_of_clip.keyframes = choose_keyframes(clip, o.most_keyframes);
+    auto &keyframes = fit_of_clip.keyframes = scattered(choose_keyframes(clip, o.most_keyframes));
     FitInput input;
     input.observations = keyframe_observations(clip, keyframes);
     if (keyframes.size() < 2 || input.observations.empty())

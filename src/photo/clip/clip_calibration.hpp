@@ -20,7 +20,7 @@ struct ClipOptions {
 struct ClipFit {
     BuildReport report;  // of the keyframes
     Fitted best;
-    std::vector<uint32_t> keyframes;
+    std::vector<uint32_t> keyframes;  // in the order of the fit
     size_t points = 0, observations = 0;  // of the fit
 
     std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone

@@ -9,39 +9,51 @@
 namespace lensprof {
 namespace {
 
-constexpr double patch_side = 7.0;  // px of the reduced frame
+constexpr int patch_side = 7;  // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
 constexpr size_t most_static_frames = 300;
 
-// The mean of each channel over a square, whose pixels at the rim count with their share.
-std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place, double side) {
+// Sums of a channel over the samples of a patch.
+struct ChannelSums {
+    double sum = 0.0, squares = 0.0, highest = 0.0;
+
+    void add(double value) { sum += value, squares += value * value; }
+
+    float mean(double count) const {
+        const double mean = sum / count, spread = std::sqrt(std::max(0.0, squares / count - mean * mean));
+        if (mean >= white_value) return 1.0f;
+        return highest >= white_value || spread > largest_spread ? NAN : static_cast<float>(mean);
+    }
+};
+
+// The mean of each channel over the surface that was a square of `side` pixels where the place was first seen, sampled
+// once per pixel.
+std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place, int side) {
     const uint32_t channels = lensprof_layout_samples(frame.layout);
-    const double left = place.x - side / 2.0, top = place.y - side / 2.0;
-    const auto first_x = static_cast<uint32_t>(std::max(0.0, std::ceil(left - 0.5))),
-               first_y = static_cast<uint32_t>(std::max(0.0, std::ceil(top - 0.5)));
-    const auto last_x = static_cast<uint32_t>(std::min(frame.width - 1.0, std::floor(left + side + 0.5))),
-               last_y = static_cast<uint32_t>(std::min(frame.height - 1.0, std::floor(top + side + 0.5)));
-    double sum[3] = {}, squares[3] = {}, highest[3] = {}, weights = 0.0;
-    for (uint32_t y = first_y; y <= last_y; y++) {
-        const double wy = std::clamp(std::min(y + 0.5 - top, top + side - y + 0.5), 0.0, 1.0);
-        for (uint32_t x = first_x; x <= last_x; x++) {
-            const double weight = wy * std::clamp(std::min(x + 0.5 - left, left + side - x + 0.5), 0.0, 1.0);
-            weights += weight;
+    ChannelSums sums[3];
+    for (int row = 0; row < side; row++)
+        for (int column = 0; column < side; column++) {
+            const double dx = column - 0.5 * (side - 1), dy = row - 0.5 * (side - 1);
+            const auto &shape = place.shape;
+            const double x = std::clamp(double(place.x) + double(shape[0]) * dx + double(shape[1]) * dy, 0.0,
+                                        frame.width - 1.001),
+                         y = std::clamp(double(place.y) + double(shape[2]) * dx + double(shape[3]) * dy, 0.0,
+                                        frame.height - 1.001);
+            const auto left = static_cast<size_t>(x), top = static_cast<size_t>(y);
+            const double right = x - double(left), below = y - double(top);
+            const uint8_t *upper = &frame.pixels[top * frame.row_bytes], *lower = upper + frame.row_bytes;
             for (uint32_t c = 0; c < channels; c++) {
-                const double value =
-                    sample_value(frame.sample, &frame.pixels[y * frame.row_bytes], size_t(x) * channels + c);
-                sum[c] += weight * value, squares[c] += weight * value * value;
-                highest[c] = std::max(highest[c], value);
+                const auto value = [&](const uint8_t *of_row, size_t at) {
+                    return sample_value(frame.sample, of_row, at * channels + c);
+                };
+                const double a = value(upper, left), b = value(upper, left + 1), d = value(lower, left),
+                             e = value(lower, left + 1);
+                sums[c].add((1.0 - below) * (a + right * (b - a)) + below * (d + right * (e - d)));
+                sums[c].highest = std::max({sums[c].highest, a, b, d, e});
             }
         }
-    }
     std::array<float, 3> values{};
-    for (uint32_t c = 0; c < channels; c++) {
-        const double mean = sum[c] / weights, spread = std::sqrt(std::max(0.0, squares[c] / weights - mean * mean));
-        const bool is_white = mean >= white_value;
-        const bool is_partly_white = !is_white && highest[c] >= white_value;
-        values[c] = is_white ? 1.0f : is_partly_white || spread > largest_spread ? NAN : static_cast<float>(mean);
-    }
+    for (uint32_t c = 0; c < channels; c++) values[c] = sums[c].mean(side * side);
     if (channels == 1) values[1] = values[2] = values[0];
     return values;
 }
@@ -68,7 +80,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         found.mean_level = tracked.mean_level, found.motion = tracked.motion, found.repeats = tracked.repeats;
         if (tracked.is_blank) found.state = ClipState::blank;
         for (const TrackedPlace &place : tracked.places) {
-            const auto value = patch_mean(frame.picture, place, patch_side * tracked.side);
+            const auto value = patch_mean(frame.picture, place, patch_side * static_cast<int>(tracked.side));
             found.observations.push_back({place.track, place.x, place.y, value});
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }

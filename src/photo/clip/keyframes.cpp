@@ -10,7 +10,7 @@ namespace {
 
 constexpr double exposure_step_ev = 0.3, usual_gamma = 2.2;  // the response is not known yet
 constexpr double every_frame = 2.0;                          // as the share of scene points
-constexpr size_t least_shared = 12, least_keyframes = 20;
+constexpr size_t least_shared = 12, least_keyframes = 50;
 
 // What two frames have in common.
 struct Common {

@@ -9,7 +9,7 @@
 namespace lensprof {
 
 // Frames in order, at most `most` of them, of one segment. A keyframe follows where too few scene points of the last
-// one are still seen, or its exposure changed. The share of the points is the smallest that gives 20 keyframes. Of a
+// one are still seen, or its exposure changed. The share of the points is the smallest that gives 50 keyframes. Of a
 // clip with more than `most`, the consecutive keyframes over which the exposure changes most.
 std::vector<uint32_t> choose_keyframes(const ClipTracks &clip, uint32_t most);
 

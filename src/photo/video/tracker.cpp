@@ -8,6 +8,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "fit/base/quantile.hpp"
+#include "photo/video/look.hpp"
 
 namespace lensprof {
 namespace {
@@ -15,9 +16,8 @@ namespace {
 constexpr int reduced_side = 640;        // px, the longer side of the frames that are tracked
 constexpr int most_corners = 360;        // per frame
 constexpr double least_share = 0.8;      // of most_corners, below which new ones are added
-constexpr double least_likeness = 0.95;  // of a corner now and when it was first seen
 constexpr double corner_quality = 0.004, largest_return_px = 0.6;
-constexpr int window_px = 15, levels = 4, border_px = 9;
+constexpr int window_px = 15, levels = 4, border_px = Look::reach + 3;
 constexpr double least_kept = 0.15;  // of the corners, else the frame is a cut
 constexpr uint32_t few_corners = 12;
 constexpr double blank_levels = 6.0;  // mean of a frame without content, from black or white
@@ -93,33 +93,22 @@ cv::Point2f even_offset(const cv::Mat &unevenness, cv::Point2f corner) {
     return offset;
 }
 
-cv::Mat look_of(const cv::Mat &grey, cv::Point2f place) {
-    constexpr int side = 15;
-    cv::Mat look;
-    cv::getRectSubPix(grey, {side, side}, place, look, CV_32F);
-    return look;
-}
-
-// Correlation of two pictures, which does not depend on exposure.
-double likeness(const cv::Mat &a, const cv::Mat &b) {
-    cv::Mat result;
-    cv::matchTemplate(a, b, result, cv::TM_CCOEFF_NORMED);
-    return double(result.at<float>(0, 0));
-}
-
 }  // namespace
 
 struct CornerTracker::State {
     struct Corner {
         uint32_t track;
-        cv::Point2f place, born, offset;
-        cv::Mat look;  // its surroundings when it was first seen
+        cv::Point2f born, offset;
+        Look look;
+        Warp warp;
+
+        cv::Point2f place() const { return {float(warp.place.x()), float(warp.place.y())}; }
     };
 
     void follow(const cv::Mat &grey, TrackedFrame &found);
     void find_new(const cv::Mat &grey);
 
-    cv::Mat before;
+    cv::Mat before, smooth;  // the frame before; this one without noise
     std::vector<cv::Mat> pyramid_before;
     std::vector<Corner> corners;
     uint32_t next_track = 0;
@@ -136,7 +125,7 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
     std::vector<cv::Mat> pyramid;
     cv::buildOpticalFlowPyramid(with_levels_of(before, grey), pyramid, window, levels - 1);
     Points from, to, back;
-    for (const Corner &corner : corners) from.push_back(corner.place);
+    for (const Corner &corner : corners) from.push_back(corner.place());
     std::vector<uint8_t> is_found, is_back;
     cv::calcOpticalFlowPyrLK(pyramid_before, pyramid, from, to, is_found, cv::noArray(), window, levels - 1, criteria);
     cv::calcOpticalFlowPyrLK(pyramid, pyramid_before, to, back, is_back, cv::noArray(), window, levels - 1, criteria);
@@ -148,9 +137,11 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
         const bool is_inside = inside.contains(to[i]);
         inner += is_inside || !is_found[i];
         if (!is_found[i] || !is_back[i] || !is_inside || cv::norm(back[i] - from[i]) > largest_return_px) continue;
-        if (likeness(corners[i].look, look_of(grey, to[i])) < least_likeness) continue;
+        Warp warp = corners[i].warp;
+        warp.place = {double(to[i].x), double(to[i].y)};
+        if (!corners[i].look.align(smooth, warp)) continue;
         kept.push_back(corners[i]);
-        kept.back().place = to[i];
+        kept.back().warp = warp;
         motion.push_back(cv::norm(to[i] - from[i]));
         travel.push_back(cv::norm(to[i] - corners[i].born));
     }
@@ -167,12 +158,13 @@ void CornerTracker::State::find_new(const cv::Mat &grey) {
     const double distance = std::sqrt(double(grey.total()) / most_corners) * 0.6;
     cv::Mat mask(grey.size(), CV_8U, cv::Scalar(0));
     mask(cv::Rect(border_px, border_px, grey.cols - 2 * border_px, grey.rows - 2 * border_px)) = 255;
-    for (const Corner &corner : corners) cv::circle(mask, corner.place, cvRound(distance), cv::Scalar(0), cv::FILLED);
+    for (const Corner &corner : corners) cv::circle(mask, corner.place(), cvRound(distance), cv::Scalar(0), cv::FILLED);
     Points found;
     cv::goodFeaturesToTrack(grey, found, most_corners - int(corners.size()), corner_quality, distance, mask, 5);
     const cv::Mat unevenness = unevenness_of(grey);
     for (const cv::Point2f &place : found)
-        corners.push_back({next_track++, place, place, even_offset(unevenness, place), look_of(grey, place)});
+        corners.push_back(
+            {next_track++, place, even_offset(unevenness, place), Look(smooth, place), Warp(place)});
 }
 
 TrackedFrame CornerTracker::add(const Picture &frame) {
@@ -189,6 +181,7 @@ TrackedFrame CornerTracker::add(const Picture &frame) {
         s.corners.clear(), s.before.release();
         return found;
     }
+    cv::GaussianBlur(grey, s.smooth, {3, 3}, 0.7);
     if (!s.before.empty() && s.before.size() == grey.size()) {
         found.repeats = cv::norm(s.before, grey, cv::NORM_L1) <= same_levels * double(grey.total());
         s.follow(grey, found);
@@ -197,9 +190,13 @@ TrackedFrame CornerTracker::add(const Picture &frame) {
     s.before = grey;
     cv::buildOpticalFlowPyramid(grey, s.pyramid_before, {window_px, window_px}, levels - 1);
     for (const State::Corner &corner : s.corners) {
-        const cv::Point2f place = corner.place + corner.offset;
+        const Eigen::Vector2f place = corner.warp(corner.offset.x, corner.offset.y).cast<float>() * float(side);
+        const Eigen::Matrix2f shape = corner.warp.shape.cast<float>();
         const float middle = 0.5f * float(side - 1);  // of the square of a reduced pixel
-        found.places.push_back({corner.track, place.x * float(side) + middle, place.y * float(side) + middle});
+        found.places.push_back({corner.track,
+                                place.x() + middle,
+                                place.y() + middle,
+                                {shape(0, 0), shape(0, 1), shape(1, 0), shape(1, 1)}});
     }
     return found;
 }

@@ -1,6 +1,8 @@
-// Follows corners from frame to frame of a moving camera (pyramidal Lucas-Kanade, Bouguet 2000).
+// Follows corners from frame to frame of a moving camera (pyramidal Lucas-Kanade, Bouguet 2000), and finds the place of
+// each by comparison with its surroundings when it was first seen, so that errors do not add up.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -14,6 +16,7 @@ namespace lensprof {
 struct TrackedPlace {
     uint32_t track;
     float x, y;
+    std::array<float, 4> shape;  // by rows: maps offsets in the frame where it was first seen to those in this one
 };
 
 // What the tracker finds in a frame.
