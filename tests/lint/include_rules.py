@@ -82,7 +82,8 @@ LAYERS = {
         FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core", "falloff"], CPP_OUTSIDE
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
-    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/joined_sets.hpp",
+    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/chained.hpp",
+                        "fit/base/joined_sets.hpp", "fit/base/location.hpp",
                         "fit/base/mixed_bits.hpp", "fit/base/quantile.hpp", "fit/base/track_pairs.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
@@ -108,8 +109,7 @@ ROOM_HEADERS = {
     "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
     "src/photo/registration": {"Eigen/*", "opencv2/*", "immintrin.h"},  # nearest_features.cpp
     "src/photo/reconstruction": {"sqlite3.h"},
-    "src/photo/clip": {"Eigen/*"},
-    "src/photo/video": {"libavcodec/*", "libavformat/*", "libavutil/*", "libswscale/*", "opencv2/*"},
+    "src/photo/video": {"Eigen/*", "libavcodec/*", "libavformat/*", "libavutil/*", "libswscale/*", "opencv2/*"},
     "src/cli/fitting": {"zip.h"},
     "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "fitsio.h", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
                            "png.h", "pugixml.hpp", "tiffio.h", "webp/*", "zlib.h"},

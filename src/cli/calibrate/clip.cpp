@@ -113,7 +113,7 @@ void report_times(const ClipTracks &clip, double error_ev, Streams &streams) {
                                    error_ev));
 }
 
-Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, double times_error_ev,
+Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally,
                const std::vector<std::string> &written) {
     Json frames = Json::array();
     for (const ClipFrame &frame : clip.frames)
@@ -133,7 +133,7 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, d
             {"segments", tally.segments},
             {"points", fit.points},
             {"observations", fit.observations},
-            {"times_rms_ev", number_or_null(times_error_ev)},
+            {"times_rms_ev", number_or_null(fit.known_error_ev)},
             {"frames", frames},
             {"written", written}};
 }
@@ -197,16 +197,15 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
         write_levelled_frames(fit, clip, rate, o.levelled, events);
         written.push_back(o.levelled);
     }
-    const double times_error_ev = error_of_times(clip, options.known_ev);
     if (o.json) {
         Json json = build_json(fit.report);
-        json["clip"] = clip_json(fit, clip, tally, times_error_ev, written);
+        json["clip"] = clip_json(fit, clip, tally, written);
         print_json(json, streams.out);
     } else {
         print_clip(fit, clip, tally, written, streams.out);
     }
     report_frames(fit, clip, tally, streams);
-    report_times(clip, times_error_ev, streams);
+    report_times(clip, fit.known_error_ev, streams);
     for (const Notice &notice : outcome.notices.list) events.notice(notice.severity, notice.item, notice.text);
     if (!outcome.is_good) print_message(streams, outcome.refusal);
     return static_cast<int>(outcome.is_good ? ExitCode::done : ExitCode::not_usable);

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <sstream>
 
 #include "cli/correct/exposure_chart.hpp"
@@ -117,25 +116,6 @@ double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_
     const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
     std::nth_element(offsets.begin(), middle, offsets.end());
     return *middle;
-}
-
-double error_of_times(const ClipTracks &clip, const std::vector<double> &known_ev) {
-    struct Sum {
-        double value = 0.0, squares = 0.0, frames = 0.0;
-    };
-    std::map<uint32_t, Sum> of_segment;
-    for (size_t i = 0; i < known_ev.size(); i++) {
-        if (clip.frames[i].state != ClipState::measured || std::isnan(known_ev[i])) continue;
-        const double difference = known_ev[i] - clip.frames[i].exposure.ev;
-        Sum &sum = of_segment[clip.frames[i].segment];
-        sum.value += difference, sum.squares += difference * difference, sum.frames++;
-    }
-    double squares = 0.0, count = 0.0;
-    for (const auto &[segment, sum] : of_segment) {
-        squares += std::max(0.0, sum.squares - sum.value * sum.value / sum.frames);
-        count += sum.frames;
-    }
-    return count > 0.0 ? std::sqrt(squares / count) : NAN;
 }
 
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,

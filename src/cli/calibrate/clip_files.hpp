@@ -17,9 +17,6 @@ std::vector<double> read_clip_times(const std::string &path, const ClipTracks &c
 // The EV that is added to an exposure of the clip to get log2 of the known exposure time; 0 if none is known.
 double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
 
-// Root mean square difference of known and measured exposures, EV; NaN if none is known.
-double error_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
-
 // pcalib.txt and vignette.png (16 bit, of the frame's size), which DSO and its kin read. Returns their names.
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
                                      OutputFiles &outputs);

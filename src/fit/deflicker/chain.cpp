@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-
 #include "fit/deflicker/shading.hpp"
 
 namespace lensprof {
@@ -19,7 +16,6 @@ constexpr size_t kSlowLevel = 3;          // 4^3 frames
 constexpr float kMemory = 0.9f;           // of the agreement of a cell, per ratio
 constexpr double kAgreeingSpreads = 2.5;  // of the cells, within which one agrees
 constexpr double kToneStep = 0.15;        // EV, smallest ratio that shows the response
-constexpr double kGross = 0.01;           // EV, contradiction of ratios that is gross
 constexpr double kSmallestSigma = 1e-4;   // EV, of a ratio
 
 bool has_equal_cells(const FrameCells &a, const FrameCells &b) {
@@ -120,7 +116,8 @@ void FrameChain::link_over(size_t level, uint32_t frame, const FrameCells &cells
     for (size_t a = 0; a < 2; a++) shift[a] -= frames_[earlier.frame].shift[a];
     const FrameRatio ratio = compare_frames(grid_, earlier.cells, cells, steadiness(level), shift);
     if (!ratio.is_valid()) return;
-    links_.push_back({earlier.frame, frame, level, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+    links_.push_back({earlier.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma),
+                      std::exp2(2.0 * static_cast<double>(level))});
     note_agreement(level, cells, ratio);
 }
 
@@ -148,7 +145,7 @@ bool FrameChain::join(uint32_t frame, const FrameCells &cells) {
     }
     f.repeats = last.frame + 1 == frame && has_equal_cells(last.cells, cells);
     for (size_t a = 0; a < 2; a++) f.shift[a] = frames_[last.frame].shift[a] + ratio.shift[a];
-    links_.push_back({last.frame, frame, 0, ratio.ev, std::max(ratio.sigma, kSmallestSigma)});
+    links_.push_back({last.frame, frame, ratio.ev, std::max(ratio.sigma, kSmallestSigma), 1.0});
     note_tones(cells, ratio);
     note_falloff(cells, ratio, f);
     note_agreement(0, cells, ratio);
@@ -188,49 +185,12 @@ void FrameChain::add(FrameCells cells, const lensprof_deflicker_facts &facts) {
 }
 
 void FrameChain::solve() {
-    // Least squares of all ratios. What biases a ratio of neighbours, such as slow clouds, biases the next ones alike:
-    // the error of a sum of four is four times theirs, not twice. A ratio over four times the distance therefore counts
-    // four times as much. Ratios that a change of the light distorts grossly count less.
-    const auto count = static_cast<Eigen::Index>(frames_.size());
-    const auto trust_of = [](const FrameLink &link) {
-        return std::exp2(2.0 * static_cast<double>(link.level)) / (link.sigma * link.sigma);
-    };
-    std::vector<double> weight;
-    for (const FrameLink &link : links_) weight.push_back(trust_of(link));
+    // What biases a ratio of neighbours, such as slow clouds, biases the next ones alike: the error of a sum of four is
+    // four times theirs, not twice. A ratio over four times the distance therefore counts four times as much.
     std::vector<uint8_t> is_first(frames_.size(), 1);
-    for (const FrameLink &link : links_) is_first[link.to] = 0;
-    Eigen::MatrixXd ev = Eigen::MatrixXd::Zero(count, 3);
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    const uint32_t main = main_channel(grid_);
-    for (int round = 0; round < 4; round++) {
-        std::vector<Eigen::Triplet<double>> entries;
-        Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 3);
-        for (size_t n = 0; n < links_.size(); n++) {
-            const FrameLink &link = links_[n];
-            const double w = weight[n];
-            entries.emplace_back(link.to, link.to, w), entries.emplace_back(link.from, link.from, w);
-            entries.emplace_back(std::max(link.to, link.from), std::min(link.to, link.from), -w);
-            for (Eigen::Index c = 0; c < 3; c++) {
-                right(link.to, c) += w * link.ev[static_cast<size_t>(c)];
-                right(link.from, c) -= w * link.ev[static_cast<size_t>(c)];
-            }
-        }
-        for (Eigen::Index i = 0; i < count; i++)  // the first of a segment is 0 EV
-            entries.emplace_back(i, i, is_first[static_cast<size_t>(i)] ? 1e12 : 0.0);
-        Eigen::SparseMatrix<double> normal(count, count);
-        normal.setFromTriplets(entries.begin(), entries.end());
-        if (round == 0) solver.analyzePattern(normal);
-        solver.factorize(normal);
-        ev = solver.solve(right);
-        for (size_t n = 0; n < links_.size(); n++) {
-            const FrameLink &link = links_[n];
-            const double residual = std::abs(ev(link.to, main) - ev(link.from, main) - link.ev[main]);
-            const double limit = 2.0 * link.sigma + kGross;
-            weight[n] = std::min(1.0, limit / std::max(residual, limit)) * trust_of(link);
-        }
-    }
-    for (Eigen::Index i = 0; i < count; i++)
-        for (Eigen::Index c = 0; c < 3; c++) frames_[static_cast<size_t>(i)].ev[static_cast<size_t>(c)] = ev(i, c);
+    for (const ChainRatio &link : links_) is_first[link.to] = 0;
+    const auto levels = chained_levels(links_, is_first, main_channel(grid_));
+    for (size_t i = 0; i < frames_.size(); i++) frames_[i].ev = levels[i];
 }
 
 }  // namespace lensprof

@@ -7,17 +7,10 @@
 
 #include <lensprof/deflicker.h>
 
+#include "fit/base/chained.hpp"
 #include "fit/deflicker/ratio.hpp"
 
 namespace lensprof {
-
-// The ratio of frame `to` to an earlier one.
-struct FrameLink {
-    uint32_t from, to;
-    size_t level;  // of the distance, 4^level frames
-    std::array<double, 3> ev;
-    double sigma;
-};
 
 // A frame as the chain keeps it.
 struct ChainFrame {
@@ -78,7 +71,7 @@ private:
     FrameGrid grid_;
     bool has_rows_;
     std::vector<ChainFrame> frames_;
-    std::vector<FrameLink> links_;
+    std::vector<ChainRatio> links_;
     std::vector<Kept> kept_;  // the last frame, then the last whose number in the segment is a multiple of 4, 16, ...
     std::vector<Kept> waiting_;  // frames that did not agree with the last one
     struct Agreement {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "fit/base/location.hpp"
 #include "fit/base/quantile.hpp"
 
 namespace lensprof {
@@ -12,16 +13,12 @@ namespace {
 constexpr double kToneTolerance = 0.12;  // share of the ratio by which tones may differ, if the response is wrong
 constexpr double kSameScene = 0.95;      // correlation of the cells of frames of one scene
 constexpr double kSmallestAgreeing = 0.15, kSmallestCommon = 0.04;  // shares of a ratio that is trusted
-constexpr double kTukey = 3.5;           // standard deviations at which a cell has no influence
-constexpr double kBiweight = 1.1853;     // standard deviation of a normal distribution over that of its weighted values
-constexpr double kThirdWidth = 0.4307;   // half width of a third of a normal distribution, standard deviations
-constexpr double kNarrowest = 0.002;     // EV, spread of the cells
-constexpr double kDim = 0.02;            // irradiance below which noise outweighs texture
+constexpr double kNarrowest = 0.002;                                // EV, spread of the cells
+constexpr double kDim = 0.02;                                       // irradiance below which noise outweighs texture
 constexpr double kCellsPerError = 16.0;  // neighbouring cells err alike: this many count as one
 constexpr double kWorthwhile = 0.85;     // spread with a shift, relative to that without, that justifies it
 constexpr double kSmallestShift = 0.01;  // cells
 constexpr int kSearchSteps = 12;
-constexpr size_t kMostSorted = 2048;  // differences that determine the narrowest third
 
 // The difference of every cell that both frames show.
 struct Differences {
@@ -69,52 +66,6 @@ Differences differences_of(const FrameGrid &grid, const FrameCells &before, cons
     return d;
 }
 
-// Middle and standard deviation of the narrowest interval with a third of the values, as that of a normal
-// distribution: two thirds may be outliers.
-std::pair<double, double> narrowest_third(const std::vector<float> &values) {
-    std::vector<float> sorted;
-    const size_t step = values.size() / kMostSorted + 1;
-    for (size_t n = 0; n < values.size(); n += step) sorted.push_back(values[n]);
-    std::sort(sorted.begin(), sorted.end());
-    const size_t third = sorted.size() / 3;
-    size_t best = 0;
-    for (size_t n = 1; n + third < sorted.size(); n++)
-        if (sorted[n + third] - sorted[n] < sorted[best + third] - sorted[best]) best = n;
-    const double low = static_cast<double>(sorted[best]), high = static_cast<double>(sorted[best + third]);
-    return {(low + high) / 2.0, (high - low) / 2.0 / kThirdWidth};
-}
-
-struct Location {
-    double middle, spread;
-    size_t inside;  // values with influence
-};
-
-// Mode of the values: from the narrowest third, by Tukey's biweight, whose scale follows what is inside.
-Location locate(const std::vector<float> &values, const std::vector<float> &weight) {
-    auto [middle, spread] = narrowest_third(values);
-    spread = std::max(spread, kNarrowest);
-    size_t inside = 0;
-    for (int round = 0; round < 12; round++) {
-        const double limit = kTukey * spread;
-        double sum = 0.0, weights = 0.0, squares = 0.0, plain = 0.0;
-        inside = 0;
-        for (size_t n = 0; n < values.size(); n++) {
-            const double residual = static_cast<double>(values[n]) - middle, share = residual / limit;
-            if (std::abs(share) >= 1.0) continue;
-            const double tail = 1.0 - share * share, influence = static_cast<double>(weight[n]) * tail * tail;
-            sum += influence * residual, weights += influence;
-            squares += influence * residual * residual, plain += influence;
-            inside++;
-        }
-        if (!(weights > 0.0)) break;
-        const double step = sum / weights;
-        middle += step;
-        spread = std::max(kBiweight * std::sqrt(squares / plain), kNarrowest);
-        if (std::abs(step) < 1e-6 && round > 2) break;
-    }
-    return {middle, spread, inside};
-}
-
 FrameRatio ratio_of(const FrameGrid &grid, const Differences &d, const CellShift &shift) {
     FrameRatio ratio;
     ratio.shift = shift;
@@ -122,7 +73,7 @@ FrameRatio ratio_of(const FrameGrid &grid, const Differences &d, const CellShift
     ratio.common = static_cast<double>(count) / static_cast<double>(grid.cells());
     if (count < kFewestCells) return ratio;
     const uint32_t main = main_channel(grid);
-    const Location level = locate(d.ev[main], d.weight);
+    const Location level = locate(d.ev[main], d.weight, kNarrowest);
     ratio.ev.fill(level.middle);
     ratio.spread = level.spread;
     // With a wrong response, dark and bright cells of one scene have different ratios.
@@ -141,7 +92,7 @@ FrameRatio ratio_of(const FrameGrid &grid, const Differences &d, const CellShift
         if (c == main) continue;
         std::vector<float> colour(count);
         for (size_t n = 0; n < count; n++) colour[n] = d.ev[c][n] - d.ev[main][n];
-        ratio.ev[c] = level.middle + locate(colour, weight).middle;
+        ratio.ev[c] = level.middle + locate(colour, weight, kNarrowest).middle;
     }
     return ratio;
 }

@@ -58,8 +58,8 @@ std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
     return observations;
 }
 
-// Keyframes in the order of the golden ratio: the fit begins with pairs of neighbours among the observations of a point,
-// and neighbours in time differ little in light and place.
+// Keyframes in the order of the golden ratio: the fit begins with pairs of neighbours among the observations of a
+// point, and neighbours in time differ little in light and place.
 std::vector<uint32_t> scattered(const std::vector<uint32_t> &keyframes) {
     constexpr double golden = 0.6180339887498949;
     std::vector<std::pair<double, uint32_t>> order;
@@ -123,7 +123,7 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     name_images(report.names, report.verdict);
     report.exposures = best.exposures, report.reference = best.reference;
     events.update("exposures", 0.9);
-    find_exposures(model_of(best), clip);
+    fit_of_clip.known_error_ev = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
     return fit_of_clip;
 }

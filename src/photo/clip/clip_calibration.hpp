@@ -20,8 +20,9 @@ struct ClipOptions {
 struct ClipFit {
     BuildReport report;  // of the keyframes
     Fitted best;
-    std::vector<uint32_t> keyframes;  // in the order of the fit
+    std::vector<uint32_t> keyframes;      // in the order of the fit
     size_t points = 0, observations = 0;  // of the fit
+    double known_error_ev = 0.0;          // of the frames' exposures from the known ones, rms; NaN: none is known
 
     std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone
 };

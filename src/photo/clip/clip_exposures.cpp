@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-
 #include "fit/base/joined_sets.hpp"
-#include "fit/base/quantile.hpp"
+#include "fit/base/location.hpp"
 
 namespace lensprof {
 namespace {
@@ -20,6 +16,7 @@ constexpr double darkest = 8.0 / 255.0, brightest = 250.0 / 255.0;
 constexpr double value_sigma = 0.7 / 255.0;     // of the mean of a patch
 constexpr double point_sigma_ev = 0.02;         // of a scene point seen from elsewhere
 constexpr double least_ratio_sigma_ev = 0.002;  // what all points of a ratio have in common
+constexpr double largest_known_error_ev = 0.1;  // rms, above which known exposures are not those of these frames
 
 // Light of an observation, EV, and its variance; NaN where the value does not show it.
 struct Light {
@@ -48,94 +45,64 @@ std::vector<Light> lights_of(const ClipFrame &frame, const ClipModel &model, con
     return lights;
 }
 
-struct Ratio {
-    uint32_t frames[2];
-    double ev = 0.0, variance = 0.0;
+// Changes of light of the points that two frames show.
+struct Differences {
+    std::vector<float> ev, weight;
 };
 
-struct Difference {
-    double ev, weight;
-};
-
-// Tukey's mean: differences beyond 4.7 standard deviations have no weight.
-bool robust_mean(std::vector<Difference> &differences, double &mean, double &variance) {
-    if (differences.size() < least_shared) return false;
-    std::vector<double> values;
-    for (const Difference &difference : differences) values.push_back(difference.ev);
-    mean = upper_median(values);
-    double scale = 0.0, sum = 0.0, squares = 0.0;
-    for (int round = 0; round < 8; round++) {
-        if (round < 2) {
-            values.clear();
-            for (const Difference &difference : differences) values.push_back(std::abs(difference.ev - mean));
-            scale = std::max(1.4826 * upper_median(values), 0.004);
-        }
-        double total = 0.0;
-        sum = squares = 0.0;
-        for (const Difference &difference : differences) {
-            const double u = (difference.ev - mean) / (4.685 * scale);
-            if (std::abs(u) >= 1.0) continue;
-            const double weight = difference.weight * (1.0 - u * u) * (1.0 - u * u);
-            sum += weight, squares += weight * weight, total += weight * difference.ev;
-        }
-        if (!(sum > 0.0)) return false;
-        mean = total / sum;
-    }
-    variance = scale * scale * squares / (sum * sum) + least_ratio_sigma_ev * least_ratio_sigma_ev;
+// The ratio of two frames: in green over all scene points that both show; the other channels relative to it.
+bool find_ratio(const Differences (&differences)[3], ChainRatio &ratio) {
+    constexpr double narrowest_ev = 0.004;
+    const auto &[red, green, blue] = differences;
+    if (green.ev.size() < least_shared) return false;
+    const Location level = locate(green.ev, green.weight, narrowest_ev);
+    const double sigma = level.spread / std::sqrt(static_cast<double>(std::max<size_t>(level.inside, 1)));
+    ratio.ev.fill(level.middle);
+    ratio.sigma = std::hypot(sigma, least_ratio_sigma_ev);
+    for (const size_t c : {size_t(0), size_t(2)})
+        if (differences[c].ev.size() >= least_shared)
+            ratio.ev[c] += locate(differences[c].ev, differences[c].weight, narrowest_ev).middle;
     return true;
 }
 
-// Ratios of all pairs of frames in one channel.
-std::vector<Ratio> ratios_of(const ClipTracks &clip, const std::vector<std::vector<Light>> &lights, size_t channel) {
-    std::vector<Ratio> ratios;
-    std::vector<Difference> differences;
+// Of the points that both frames show: the change in green, and those of red and blue relative to it.
+void find_differences(const ClipTracks &clip, const std::vector<std::vector<Light>> &lights, uint32_t i, uint32_t j,
+                      Differences (&differences)[3]) {
+    for (Differences &of_channel : differences) of_channel.ev.clear(), of_channel.weight.clear();
+    const ClipFrame &first = clip.frames[i], &second = clip.frames[j];
+    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
+        const Light &from = lights[i][size_t(&a - first.observations.data())],
+                    &to = lights[j][size_t(&b - second.observations.data())];
+        const double green = to.ev[1] - from.ev[1];
+        if (!std::isfinite(green)) return;
+        for (size_t c = 0; c < 3; c++) {
+            const double ev = to.ev[c] - from.ev[c] - (c == 1 ? 0.0 : green);
+            if (!std::isfinite(ev)) continue;
+            differences[c].ev.push_back(static_cast<float>(ev));
+            differences[c].weight.push_back(static_cast<float>(1.0 / (from.variance[c] + to.variance[c])));
+        }
+    });
+}
+
+// Ratios over 1, 2, 4, ... frames. What biases a ratio of neighbours, such as an encoder that follows changes late,
+// biases the next ones alike: ratios over longer distances count more.
+std::vector<ChainRatio> ratios_of(const ClipTracks &clip, const std::vector<std::vector<Light>> &lights) {
+    std::vector<ChainRatio> ratios;
+    Differences differences[3];
     for (uint32_t i = 1; i < clip.frames.size(); i++)
         for (uint32_t lag = 1; lag <= std::min(longest_lag, i); lag *= 2) {
-            const ClipFrame &first = clip.frames[i - lag], &second = clip.frames[i];
-            differences.clear();
-            for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
-                const Light &from = lights[i - lag][size_t(&a - first.observations.data())],
-                            &to = lights[i][size_t(&b - second.observations.data())];
-                const double ev = to.ev[channel] - from.ev[channel];
-                if (std::isfinite(ev))
-                    differences.push_back({ev, 1.0 / (from.variance[channel] + to.variance[channel])});
-            });
-            Ratio ratio{{i - lag, i}};
-            if (robust_mean(differences, ratio.ev, ratio.variance)) ratios.push_back(ratio);
+            find_differences(clip, lights, i - lag, i, differences);
+            ChainRatio ratio{i - lag, i, {}, 0.0, static_cast<double>(lag) / longest_lag};
+            if (find_ratio(differences, ratio)) ratios.push_back(ratio);
         }
     return ratios;
 }
 
-// Exposures of the frames, of which each segment's first is 0. Ratios that contradict the others lose weight.
-std::vector<double> solved(const std::vector<Ratio> &ratios, const std::vector<uint32_t> &set_of) {
-    const auto count = static_cast<Eigen::Index>(set_of.size());
-    Eigen::VectorXd ev = Eigen::VectorXd::Zero(count);
-    for (int round = 0; round < 4; round++) {
-        std::vector<Eigen::Triplet<double>> entries;
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-        for (Eigen::Index i = 0; i < count; i++)
-            entries.emplace_back(i, i, set_of[size_t(i)] == uint32_t(i) ? 1e12 : 1e-9);
-        for (const Ratio &ratio : ratios) {
-            const auto a = Eigen::Index(ratio.frames[0]), b = Eigen::Index(ratio.frames[1]);
-            const double error = (ev[b] - ev[a] - ratio.ev) / std::sqrt(ratio.variance);
-            const double weight = (round ? 1.0 / (1.0 + error * error / 9.0) : 1.0) / ratio.variance;
-            entries.emplace_back(a, a, weight), entries.emplace_back(b, b, weight);
-            entries.emplace_back(a, b, -weight), entries.emplace_back(b, a, -weight);
-            right[a] -= weight * ratio.ev, right[b] += weight * ratio.ev;
-        }
-        Eigen::SparseMatrix<double> matrix(count, count);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-        ev = solver.solve(right);
-    }
-    return {ev.data(), ev.data() + count};
-}
-
 // Sets states and segments of the frames that ratios connect. Returns the first frame of each one's segment.
-std::vector<uint32_t> find_segments(const std::vector<Ratio> &ratios, ClipTracks &clip) {
+std::vector<uint32_t> find_segments(const std::vector<ChainRatio> &ratios, ClipTracks &clip) {
     const auto count = static_cast<uint32_t>(clip.frames.size());
     JoinedSets sets(count);
-    for (const Ratio &ratio : ratios) sets.join(ratio.frames[0], ratio.frames[1]);
+    for (const ChainRatio &ratio : ratios) sets.join(ratio.from, ratio.to);
     std::vector<uint32_t> first(count, UINT32_MAX), set_of(count), size(count, 0);
     for (uint32_t i = 0; i < count; i++) size[sets.of(i)]++;
     uint32_t segments = 0;
@@ -152,40 +119,88 @@ std::vector<uint32_t> find_segments(const std::vector<Ratio> &ratios, ClipTracks
     return set_of;
 }
 
-}  // namespace
+using Levels = std::vector<std::array<double, 3>>;
 
-void find_exposures(const ClipModel &model, ClipTracks &clip) {
-    std::vector<std::vector<Light>> lights;
-    for (const ClipFrame &frame : clip.frames) lights.push_back(lights_of(frame, model, clip.info));
-    const std::vector<Ratio> green = ratios_of(clip, lights, 1);
-    const std::vector<uint32_t> set_of = find_segments(green, clip);
-    std::array<std::vector<double>, 3> ev;
-    for (size_t c = 0; c < 3; c++) {
-        if (c != 1 && clip.channels == 1) continue;
-        ev[c] = solved(c == 1 ? green : ratios_of(clip, lights, c), set_of);
-    }
-    if (clip.channels == 1) ev[0] = ev[2] = ev[1];
+// The levels less the means of measured frames with the same number in `group_of`.
+Levels relative(Levels levels, const std::vector<uint32_t> &group_of, const ClipTracks &clip) {
     struct Sum {
         std::array<double, 3> ev{};
         double frames = 0.0;
     };
     std::map<uint32_t, Sum> sums;
-    for (uint32_t i = 0; i < set_of.size(); i++) {
-        for (size_t c = 0; c < 3; c++) sums[set_of[i]].ev[c] += ev[c][i];
-        sums[set_of[i]].frames++;
+    for (uint32_t i = 0; i < levels.size(); i++) {
+        if (clip.frames[i].state != ClipState::measured) continue;
+        Sum &sum = sums[group_of[i]];
+        for (size_t c = 0; c < 3; c++) sum.ev[c] += levels[i][c];
+        sum.frames++;
     }
-    for (uint32_t i = 0; i < set_of.size(); i++) {
-        ClipFrame &frame = clip.frames[i];
-        const Sum &sum = sums[set_of[i]];
-        const auto relative = [&](size_t c) { return ev[c][i] - sum.ev[c] / sum.frames; };
-        lensprof_exposure_init(&frame.exposure);
-        frame.exposure.ev = frame.state == ClipState::measured ? relative(1) : NAN;
-        if (frame.state != ClipState::measured) continue;
+    for (uint32_t i = 0; i < levels.size(); i++)
+        for (size_t c = 0; c < 3; c++) levels[i][c] -= sums[group_of[i]].ev[c] / sums[group_of[i]].frames;
+    return levels;
+}
+
+void set_exposures(const Levels &levels, ClipTracks &clip) {
+    for (uint32_t i = 0; i < levels.size(); i++) {
+        lensprof_exposure &exposure = clip.frames[i].exposure;
+        lensprof_exposure_init(&exposure);
+        exposure.ev = NAN;
+        if (clip.frames[i].state != ClipState::measured) continue;
+        exposure.ev = levels[i][1];
         for (const size_t c : {size_t(0), size_t(2)})
-            frame.exposure.white_balance[c] = std::exp2(relative(c) - relative(1));
+            exposure.white_balance[c] = std::exp2(levels[i][c] - levels[i][1]);
     }
-    for (const Ratio &ratio : green)
-        if (ratio.frames[1] == ratio.frames[0] + 1) clip.frames[ratio.frames[1]].ev_sigma = std::sqrt(ratio.variance);
+}
+
+// Differences of the exposures from those known, EV rms, each segment relative to its mean; NaN: none is known.
+double error_of_known(const std::vector<double> &known_ev, const ClipTracks &clip) {
+    struct Sum {
+        double value = 0.0, squares = 0.0, frames = 0.0;
+    };
+    std::map<uint32_t, Sum> of_segment;
+    for (size_t i = 0; i < known_ev.size(); i++) {
+        if (clip.frames[i].state != ClipState::measured || std::isnan(known_ev[i])) continue;
+        const double difference = known_ev[i] - clip.frames[i].exposure.ev;
+        Sum &sum = of_segment[clip.frames[i].segment];
+        sum.value += difference, sum.squares += difference * difference, sum.frames++;
+    }
+    double squares = 0.0, count = 0.0;
+    for (const auto &[segment, sum] : of_segment) {
+        squares += std::max(0.0, sum.squares - sum.value * sum.value / sum.frames);
+        count += sum.frames;
+    }
+    return count > 0.0 ? std::sqrt(squares / count) : NAN;
+}
+
+}  // namespace
+
+double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip) {
+    std::vector<std::vector<Light>> lights;
+    for (const ClipFrame &frame : clip.frames) lights.push_back(lights_of(frame, model, clip.info));
+    const std::vector<ChainRatio> ratios = ratios_of(clip, lights);
+    std::vector<uint32_t> group_of = find_segments(ratios, clip);
+    std::vector<uint8_t> is_anchor(clip.frames.size());
+    for (uint32_t i = 0; i < is_anchor.size(); i++) is_anchor[i] = group_of[i] == i;
+    set_exposures(relative(chained_levels(ratios, is_anchor, 1), group_of, clip), clip);
+    for (const ChainRatio &ratio : ratios)
+        if (ratio.to == ratio.from + 1) clip.frames[ratio.to].ev_sigma = ratio.sigma;
+    const double error_ev = error_of_known(known.ev, clip);
+    if (!(error_ev < largest_known_error_ev)) return error_ev;
+    // The known exposures hold what the ratios add up to, and connect the segments.
+    std::vector<uint8_t> is_known(clip.frames.size(), 0);
+    for (uint32_t i = 0; i < is_known.size(); i++) is_known[group_of[i]] |= std::isfinite(known.ev[i]);
+    uint32_t joined = UINT32_MAX;
+    for (uint32_t i = 0; i < is_known.size(); i++) {
+        const uint32_t first = group_of[i];
+        if (!is_known[first]) continue;
+        is_anchor[first] = 0;
+        joined = std::min(joined, first);
+    }
+    for (uint32_t &group : group_of)
+        if (is_known[group]) group = joined;
+    const Levels held = relative(chained_levels(ratios, is_anchor, 1, known), group_of, clip);
+    for (uint32_t i = 0; i < held.size(); i++)
+        if (clip.frames[i].state == ClipState::measured) clip.frames[i].exposure.ev = held[i][1];
+    return error_ev;
 }
 
 }  // namespace lensprof

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "fit/base/chained.hpp"
 #include "photo/clip/clip_tracks.hpp"
 
 namespace lensprof {
@@ -13,9 +14,11 @@ struct ClipModel {
 };
 
 // Sets state, segment and exposure of all frames. Every frame is compared with those 1, 2, 4, ... 256 frames before it:
-// per channel, the ratio of two frames is the robust mean over the scene points that both show. The exposures are the
-// least squares solution of all ratios, so that errors do not add up over the life of a point. Frames that are not
-// connected form segments, each relative to its geometric mean.
-void find_exposures(const ClipModel &model, ClipTracks &clip);
+// the ratio of two frames is the mode over the scene points that both show. The exposures are the least squares
+// solution of all ratios, so that errors do not add up over the life of a point. Frames that are not connected form
+// segments, each relative to its geometric mean. Known exposures, one per frame with NaN for none, hold and connect
+// segments unless they contradict the ratios by 0.1 EV (rms). Returns by how much the exposures differ from the known
+// ones without them, EV rms; NaN: none is known.
+double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip);
 
 }  // namespace lensprof
