@@ -1,33 +1,23 @@
 #include "cli/calibrate/clip_files.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include "cli/correct/exposure_chart.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
-#include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/clip/frame_source.hpp"
+#include "photo/scene/exposure_times.hpp"
 
 namespace lensprof {
 namespace {
 
 std::string path_in(const std::string &folder, const std::string &name) {
     return (std::filesystem::path(folder) / name).string();
-}
-
-double number_in(const std::string &word, const std::string &where) {
-    double value = NAN;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-        throw Failure(LENSPROF_ERROR_READ, where + ": " + word + " is not a finite number; correct it");
-    return value;
 }
 
 std::vector<LevelledFrame> charted(const ClipTracks &clip) {
@@ -80,30 +70,16 @@ const char *clip_state_name(ClipState state) {
 }
 
 std::vector<double> read_clip_times(const std::string &path, const ClipTracks &clip) {
-    std::istringstream text(read_text(path, max_text_bytes));
-    std::vector<double> ev;
-    size_t number = 0;
-    for (std::string line; std::getline(text, line);) {
-        const std::string where = path + ": line " + std::to_string(++number);
-        std::istringstream words(line.substr(0, line.find('#')));
-        std::vector<std::string> fields;
-        for (std::string word; words >> word;) fields.push_back(word);
-        if (fields.empty()) continue;
-        if (fields.size() < 2 || fields.size() > 3)
-            throw Failure(LENSPROF_ERROR_READ, where + ": give name, time stamp and exposure time");
-        const double time = fields.size() == 3 ? number_in(fields[2], where) : NAN;
-        if (time <= 0.0) throw Failure(LENSPROF_ERROR_READ, where + ": the exposure time must be above 0; correct it");
-        ev.push_back(std::log2(time));
-    }
-    if (ev.size() != clip.frames_in_clip && ev.size() != clip.frames.size())
+    const std::vector<TimesLine> lines = read_times_lines(path);
+    if (lines.size() != clip.frames_in_clip && lines.size() != clip.frames.size())
         throw Failure(LENSPROF_ERROR_READ,
                       path
                           + format(": has %zu lines, but the clip has %llu frames; give a line for "
                                    "each frame",
-                                   ev.size(), static_cast<unsigned long long>(clip.frames_in_clip)));
+                                   lines.size(), static_cast<unsigned long long>(clip.frames_in_clip)));
     std::vector<double> of_frames;
     for (size_t i = 0; i < clip.frames.size(); i++)
-        of_frames.push_back(ev[ev.size() == clip.frames_in_clip ? clip.frames[i].number : i]);
+        of_frames.push_back(lines[lines.size() == clip.frames_in_clip ? clip.frames[i].number : i].ev);
     return of_frames;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int patch_side = 7;  // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
-constexpr size_t most_static_frames = 300;
+constexpr size_t most_static_frames = 200;
 
 // Sums of a channel over the samples of a patch.
 struct ChannelSums {

@@ -21,44 +21,39 @@ namespace fs = std::filesystem;
 
 constexpr const char *times_name = "times.txt", *images_name = "images";
 
+[[noreturn]] void fail_in_line(const std::string &path, size_t line, const std::string &what) {
+    throw Failure(LENSPROF_ERROR_READ, path + ": line " + std::to_string(line) + ": " + what);
+}
+
 // The name without folder and extension, by which lines and pictures are matched.
 std::string base_name(const std::string &file) { return fs::path(file).stem().string(); }
 
-struct Line {
-    std::string name;
-    double time_stamp = NAN, exposure = NAN;
-};
-
-class TimesReader {
+class LineParser {
 public:
-    TimesReader(const std::string &path, const std::vector<std::string> &files, bool is_whole)
-        : path_(path), files_(files), is_whole_(is_whole), ev_(files.size(), NAN), line_of_(files.size(), 0) {
-        for (size_t i = 0; i < files.size(); i++) {
-            const auto [other, is_new] = picture_of_.emplace(base_name(files[i]), i);
-            if (!is_new)
-                throw Failure(LENSPROF_ERROR_ARGUMENT,
-                              files[i] + ": has the name of " + files[other->second] + " in " + path + "; rename one");
-        }
-    }
+    explicit LineParser(const std::string &path) : path_(path) {}
 
-    std::vector<double> read() {
+    std::vector<TimesLine> lines() {
         std::istringstream text(read_text(path_, max_text_bytes));
+        std::vector<TimesLine> lines;
         for (std::string line; std::getline(text, line);) {
             number_++;
             std::istringstream words(line.substr(0, line.find('#')));
             std::vector<std::string> fields;
             for (std::string word; words >> word;) fields.push_back(word);
-            if (!fields.empty()) add(line_of(fields));
+            if (fields.empty()) continue;
+            const TimesLine next = line_of(fields);
+            if (!lines.empty() && !(next.time_stamp > lines.back().time_stamp))
+                fail(
+                    format("the time stamp %.17g is not after %.17g of line %zu; correct it, or sort the lines by time",
+                           next.time_stamp, lines.back().time_stamp, lines.back().number));
+            lines.push_back(next);
         }
-        if (previous_ == 0) throw Failure(LENSPROF_ERROR_READ, path_ + ": states no picture; give an intact file");
-        check_pictures_have_lines();
-        return ev_;
+        if (lines.empty()) throw Failure(LENSPROF_ERROR_READ, path_ + ": states no picture; give an intact file");
+        return lines;
     }
 
 private:
-    [[noreturn]] void fail(const std::string &what) const {
-        throw Failure(LENSPROF_ERROR_READ, path_ + ": line " + std::to_string(number_) + ": " + what);
-    }
+    [[noreturn]] void fail(const std::string &what) const { fail_in_line(path_, number_, what); }
 
     double number(const std::string &field, const char *what) const {
         double value = NAN;
@@ -68,41 +63,64 @@ private:
         return value;
     }
 
-    Line line_of(const std::vector<std::string> &fields) const {
+    TimesLine line_of(const std::vector<std::string> &fields) const {
         if (fields.size() < 2 || fields.size() > 3)
             fail("has " + counted(fields.size(), "word")
                  + "; give name, time stamp and exposure time, the last if it is known");
-        Line line{fields[0], number(fields[1], "time stamp"), NAN};
-        if (fields.size() == 3) line.exposure = number(fields[2], "exposure time");
-        if (line.exposure <= 0.0)
+        const double time = number(fields[1], "time stamp"),
+                     exposure = fields.size() == 3 ? number(fields[2], "exposure time") : NAN;
+        if (exposure <= 0.0)
             fail("the exposure time is " + fields[2] + ", but must be above 0; correct it, or omit it if unknown");
-        return line;
+        return {number_, fields[0], time, std::log2(exposure)};
     }
 
-    void add(const Line &line) {
-        if (previous_ && !(line.time_stamp > time_stamp_))
-            fail(format("the time stamp %.17g is not after %.17g of line %zu; correct it, or sort the lines by time",
-                        line.time_stamp, time_stamp_, previous_));
-        previous_ = number_, time_stamp_ = line.time_stamp;
+    const std::string &path_;
+    size_t number_ = 0;
+};
+
+// Gives lines to the pictures that they name.
+class LineMatcher {
+public:
+    LineMatcher(const std::string &path, const std::vector<std::string> &files, bool is_whole)
+        : path_(path), files_(files), is_whole_(is_whole), ev_(files.size(), NAN), line_of_(files.size(), 0) {
+        for (size_t i = 0; i < files.size(); i++) {
+            const auto [other, is_new] = picture_of_.emplace(base_name(files[i]), i);
+            if (!is_new)
+                throw Failure(LENSPROF_ERROR_ARGUMENT,
+                              files[i] + ": has the name of " + files[other->second] + " in " + path + "; rename one");
+        }
+    }
+
+    std::vector<double> match(const std::vector<TimesLine> &lines) {
+        for (const TimesLine &line : lines) add(line);
+        check_pictures_have_lines(lines.back().number);
+        return ev_;
+    }
+
+private:
+    void add(const TimesLine &line) {
         auto found = picture_of_.find(line.name);
         if (found == picture_of_.end()) found = picture_of_.find(base_name(line.name));
         if (found == picture_of_.end()) {
-            if (is_whole_) fail("there is no picture " + line.name + "; remove the line, or add the picture");
+            if (is_whole_)
+                fail_in_line(path_, line.number,
+                             "there is no picture " + line.name + "; remove the line, or add the picture");
             return;
         }
         size_t &of_picture = line_of_[found->second];
         if (of_picture)
-            fail(line.name + " is already in line " + std::to_string(of_picture) + "; remove one of the lines");
-        of_picture = number_;
-        ev_[found->second] = std::log2(line.exposure);
+            fail_in_line(path_, line.number,
+                         line.name + " is already in line " + std::to_string(of_picture) + "; remove one of the lines");
+        of_picture = line.number;
+        ev_[found->second] = line.ev;
     }
 
-    void check_pictures_have_lines() const {
+    void check_pictures_have_lines(size_t lines) const {
         const auto missing = static_cast<size_t>(std::count(line_of_.begin(), line_of_.end(), 0u));
         if (!missing) return;
         const auto first = std::find(line_of_.begin(), line_of_.end(), 0u) - line_of_.begin();
         throw Failure(LENSPROF_ERROR_READ,
-                      path_ + ": has " + std::to_string(number_) + " lines, but none for "
+                      path_ + ": has " + std::to_string(lines) + " lines, but none for "
                           + files_[static_cast<size_t>(first)]
                           + (missing > 1 ? " and " + counted(missing - 1, "other picture") : std::string())
                           + "; add a line with name and time stamp, without exposure if unknown, or move the picture");
@@ -114,8 +132,6 @@ private:
     std::map<std::string, size_t> picture_of_;
     std::vector<double> ev_;
     std::vector<size_t> line_of_;  // per picture, 0: none yet
-    size_t number_ = 0, previous_ = 0;
-    double time_stamp_ = 0.0;
 };
 
 // Only ratios count, but a file in seconds may be a surprise in other programs.
@@ -146,9 +162,11 @@ ExposureSweep find_sweep(const std::string &folder, Events &events) {
     return sweep;
 }
 
+std::vector<TimesLine> read_times_lines(const std::string &path) { return LineParser(path).lines(); }
+
 std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
                                         Events &events) {
-    std::vector<double> ev = TimesReader(path, files, is_whole).read();
+    std::vector<double> ev = LineMatcher(path, files, is_whole).match(read_times_lines(path));
     note_unit(path, ev, events);
     return ev;
 }

@@ -19,10 +19,20 @@ struct ExposureSweep {
 // to the pictures. Failure (usage) for a folder without pictures.
 ExposureSweep find_sweep(const std::string &folder, Events &events);
 
+struct TimesLine {
+    size_t number;  // in the file, from 1
+    std::string name;
+    double time_stamp, ev;  // ev: of the exposure time, NaN where the line states none
+};
+
+// All lines, of which there is at least one. Failure (unreadable) with the line for time stamps that do not increase,
+// and exposures that are not positive numbers.
+std::vector<TimesLine> read_times_lines(const std::string &path);
+
 // The exposures of `files`, EV, NaN where the file states none. The exposure times may have any unit, because only
 // their ratios count. Names are those of the files, with or without folder and extension. `is_whole`: the files are all
-// pictures that there are, so that a line without a picture is an error. Failure (unreadable) with the line for wrong
-// names, time stamps that do not increase, and exposures that are not positive numbers.
+// pictures that there are, so that a line without a picture is an error. Failure as of read_times_lines, and for wrong
+// names.
 std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
                                         Events &events);
 
