@@ -71,6 +71,40 @@ std::vector<uint32_t> scattered(const std::vector<uint32_t> &keyframes) {
     return result;
 }
 
+// By how much the exposures of keyframes in the fit differ from those of all frames, EV rms. The latter compare only
+// what two frames share, so that a response of the wrong shape gives others.
+double contradiction_ev(const ClipFit &fit, const ClipTracks &clip) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (size_t k = 0; k < fit.keyframes.size(); k++) {
+        const ClipFrame &frame = clip.frames[fit.keyframes[k]];
+        const double difference = fit.best.exposures[k].ev - frame.exposure.ev;
+        if (frame.state != ClipState::measured || !std::isfinite(difference)) continue;
+        sum += difference, squares += difference * difference, count++;
+    }
+    return count > 1.0 ? std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))) : 0.0;
+}
+
+// A fit that contradicts itself or the given times has a wrong response.
+void check_exposures(const ClipFit &fit, const ClipTracks &clip) {
+    if (fit.known_error_ev > largest_known_error_ev)
+        throw Failure(
+            LENSPROF_ERROR_NOT_USABLE,
+            clip.path
+                + format(": the given exposure times differ from what the frames show by %.2f EV (rms); check "
+                         "that each line belongs to its frame, or leave out the times",
+                         fit.known_error_ev),
+            LENSPROF_REASON_KNOWN_CONTRADICT);
+    constexpr double largest_ev = 0.03;
+    const double error_ev = contradiction_ev(fit, clip);
+    if (fit.best.corrects() && error_ev > largest_ev)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      clip.path
+                          + format(": the exposures of keyframes in the fit differ from those of all frames by %.2f EV "
+                                   "(rms), so that the response is wrong; record more motion and change of exposure",
+                                   error_ev),
+                      LENSPROF_REASON_UNDETERMINED);
+}
+
 ClipModel model_of(const Fitted &best) { return {best.response_of(0), best.falloff_of(0)}; }
 
 }  // namespace
@@ -125,6 +159,7 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     events.update("exposures", 0.9);
     fit_of_clip.known_error_ev = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
+    check_exposures(fit_of_clip, clip);
     return fit_of_clip;
 }
 

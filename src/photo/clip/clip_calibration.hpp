@@ -28,7 +28,8 @@ struct ClipFit {
 };
 
 // Fits response, falloff, and exposures of keyframes with the method radiance, then sets the exposures of all frames of
-// the clip. Failure (not usable) for a clip in which no scene points are followed.
+// the clip. Failure (not usable) for a clip in which no scene points are followed, for known exposures that the frames
+// contradict, and for a fit whose exposures are not those of the frames.
 ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events);
 
 }  // namespace lensprof

@@ -16,7 +16,6 @@ constexpr double darkest = 8.0 / 255.0, brightest = 250.0 / 255.0;
 constexpr double value_sigma = 0.7 / 255.0;     // of the mean of a patch
 constexpr double point_sigma_ev = 0.02;         // of a scene point seen from elsewhere
 constexpr double least_ratio_sigma_ev = 0.002;  // what all points of a ratio have in common
-constexpr double largest_known_error_ev = 0.1;  // rms, above which known exposures are not those of these frames
 
 // Light of an observation, EV, and its variance; NaN where the value does not show it.
 struct Light {

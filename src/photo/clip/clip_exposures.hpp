@@ -8,6 +8,8 @@
 
 namespace lensprof {
 
+constexpr double largest_known_error_ev = 0.1;  // rms, above which known exposures are not those of these frames
+
 struct ClipModel {
     lensprof_response response;
     std::array<lensprof_vignetting, 3> falloff;
