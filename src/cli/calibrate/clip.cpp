@@ -114,7 +114,7 @@ void report_times(const ClipTracks &clip, double error_ev, Streams &streams) {
 }
 
 Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, double times_error_ev,
-               const std::vector<std::string> &written) {
+               const std::vector<std::string> &written, const ClipOutput *levelled) {
     Json frames = Json::array();
     for (const ClipFrame &frame : clip.frames)
         frames.push_back({{"seconds", frame.seconds},
@@ -135,11 +135,12 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, d
             {"observations", fit.observations},
             {"times_rms_ev", number_or_null(times_error_ev)},
             {"frames", frames},
+            {"video", levelled ? levelled->json() : Json()},
             {"written", written}};
 }
 
 void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, const std::vector<std::string> &written,
-                std::ostream &out) {
+                const ClipOutput *levelled, std::ostream &out) {
     const lensprof_fit_result &result = fit.report.fit;
     out << counted(clip.frames.size(), "frame") << " of " << clip.info.width << " x " << clip.info.height << " pixels, "
         << tally.measured << " measured, " << fit.keyframes.size() << " keyframes in the fit\n"
@@ -147,7 +148,40 @@ void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, 
         << format("corner    %.3f of the light in the middle\n",
                   lensprof_vignetting_eval(&green_falloff(result), 1.0, nullptr))
         << format("residual  %.2f levels of 255\n", result.heldout_rms);
+    if (levelled) out << levelled->text();
     for (const std::string &name : written) out << "written   " << name << "\n";
+}
+
+// Failure for outputs that cannot be written, before anything is measured.
+std::unique_ptr<ClipOutput> open_outputs(const ClipCommand &o, Events &events) {
+    if (o.levelled.empty()) {
+        if (!o.to.empty() || !o.codec.name.empty())
+            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(o.to.empty() ? "--codec" : "--to")
+                                                       + ": is for levelled frames; give --frames, too");
+        check_output_folder(o.output);
+        return nullptr;
+    }
+    if (!o.to.empty() && o.to != "mean" && o.to != "first" && frame_number(o.to) == 0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": is neither mean, first nor the number of a frame");
+    check_output_folder(o.output);
+    auto levelled = std::make_unique<ClipOutput>(o.input, o.levelled, o.codec, o.overwrite, events);
+    if (levelled->is_video() && o.frames_per_s > 0.0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.levelled + ": a video has all frames of its source; omit --fps, or give the name of a folder");
+    return levelled;
+}
+
+void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
+                    Streams &streams, Events &events) {
+    const auto wanted = wanted_exposures(o.to, clip);
+    const auto unmeasured = write_levelled_frames(fit, clip, wanted, rate, output, events);
+    if (wanted.size() > 1 && frame_number(o.to) > 0)
+        note(streams, o.levelled + ": scenes without the frame " + o.to + " have their mean exposure");
+    if (unmeasured.empty()) return;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < clip.frames.size(); i++) names.push_back(output.name_of(i));
+    note(streams, o.levelled + ": " + (output.is_video() ? "not levelled" : "left out")
+                      + ", because the exposure is not measured: " + listed(unmeasured, names));
 }
 
 }  // namespace
@@ -159,6 +193,7 @@ bool is_frame_folder(const std::string &path) {
 
 int calibrate_clip(const ClipCommand &o, Streams &streams) {
     Progress events(streams, o.progress);
+    const auto levelled = open_outputs(o, events);
     const bool is_of_pictures = is_folder(o.input);
     const double rate = is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate;
     const auto source = open_frames(o.input, rate, events);
@@ -192,18 +227,17 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     const auto tables = write_exposures(clip, offset_of_times(clip, options.known_ev), o.output, outputs);
     outputs.commit();
     written.insert(written.end(), tables.begin(), tables.end());
-    if (!o.levelled.empty() && fit.best.corrects()) {
-        make_folder(o.levelled);
-        write_levelled_frames(fit, clip, rate, o.levelled, events);
+    if (levelled && fit.best.corrects()) {
+        write_levelled(o, fit, clip, rate, *levelled, streams, events);
         written.push_back(o.levelled);
     }
     const double times_error_ev = error_of_times(clip, options.known_ev);
     if (o.json) {
         Json json = build_json(fit.report);
-        json["clip"] = clip_json(fit, clip, tally, times_error_ev, written);
+        json["clip"] = clip_json(fit, clip, tally, times_error_ev, written, levelled.get());
         print_json(json, streams.out);
     } else {
-        print_clip(fit, clip, tally, written, streams.out);
+        print_clip(fit, clip, tally, written, levelled.get(), streams.out);
     }
     report_frames(fit, clip, tally, streams);
     report_times(clip, times_error_ev, streams);

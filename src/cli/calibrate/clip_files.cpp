@@ -164,29 +164,58 @@ std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_e
     return {times, table, chart};
 }
 
-size_t write_levelled_frames(const ClipFit &fit, const ClipTracks &clip, double frames_per_s, const std::string &folder,
-                             Events &events) {
+std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip) {
+    std::vector<lensprof_exposure> wanted;
+    const size_t named = to == "mean" || to == "first" || to.empty() ? 0 : frame_number(to);
+    for (const ClipFrame &frame : clip.frames) {
+        if (frame.state != ClipState::measured || frame.segment < wanted.size()) continue;
+        lensprof_exposure mean;
+        lensprof_exposure_init(&mean);
+        wanted.resize(frame.segment + 1, mean);
+        if (to == "first") wanted.back() = frame.exposure;
+    }
+    if (named == 0) return wanted;
+    if (named > clip.frames.size())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--to " + to + ": " + clip.path + " has " + counted(clip.frames.size(), "frame"));
+    const ClipFrame &frame = clip.frames[named - 1];
+    if (frame.state != ClipState::measured)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--to " + to + ": this frame is " + clip_state_name(frame.state) + "; name another one");
+    wanted[frame.segment] = frame.exposure;
+    return wanted;
+}
+
+std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks &clip,
+                                            const std::vector<lensprof_exposure> &wanted, double frames_per_s,
+                                            ClipOutput &output, Events &events) {
     const auto profile = fit.profile();
     const auto source = open_frames(clip.path, frames_per_s, events);
-    size_t done = 0, count = 0;
-    for (VideoFrame frame; done < clip.frames.size() && source->next(frame);) {
+    const size_t count = clip.frames.size();
+    std::vector<uint32_t> unmeasured;
+    size_t done = 0;
+    for (VideoFrame frame; done < count && source->next(frame);) {
         const ClipFrame &measured = clip.frames[done];
         if (frame.number != measured.number) continue;
-        done++;
-        if (measured.state != ClipState::measured) continue;
         stop_if_cancelled();
+        const size_t index = done++;
+        const bool is_measured = measured.state == ClipState::measured;
+        if (!is_measured) unmeasured.push_back(static_cast<uint32_t>(index));
+        if (!is_measured && !output.is_video()) continue;
         source->read(frame.picture);
-        const std::string name = path_in(folder, format("frame_%05zu.png", done));
-        lensprof_error error{};
-        lensprof_target target = frame.picture.target();
-        check(lensprof_correct(profile.get(), &measured.exposure, &target, &error), name, &error);
-        frame.picture.traits = PictureTraits();
-        write_picture(name, frame.picture);
-        count++;
-        events.update_items("frames", static_cast<uint32_t>(done), static_cast<uint32_t>(clip.frames.size()));
+        if (is_measured) {
+            lensprof_exposure change = measured.exposure;
+            change.ev -= wanted[measured.segment].ev;
+            for (size_t c = 0; c < 3; c++) change.white_balance[c] /= wanted[measured.segment].white_balance[c];
+            output.write_levelled(index, count, *profile, change, frame);
+        } else {
+            output.write_unchanged(index, count, frame);
+        }
+        events.update_items("frames", static_cast<uint32_t>(done), static_cast<uint32_t>(count));
     }
+    output.finish();
     events.clear();
-    return count;
+    return unmeasured;
 }
 
 }  // namespace lensprof

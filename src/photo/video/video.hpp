@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "photo/pictures/picture.hpp"
@@ -26,6 +27,8 @@ struct VideoInfo {
 struct VideoFrame {
     double seconds = 0.0;  // presentation time since the first frame
     uint64_t number = 0;   // 0 for the first
+    double duration_s = 0.0;            // 0: not stated
+    std::optional<int64_t> time_stamp;  // as the stream states it, in its time base
     Picture picture;
 };
 
