@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/calibrate/clip_files.hpp"
+#include "cli/calibrate/levelled_clip.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/progress.hpp"
@@ -15,6 +16,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/outcome.hpp"
+#include "photo/clip/transforms_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -152,48 +154,19 @@ void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, 
     for (const std::string &name : written) out << "written   " << name << "\n";
 }
 
-// Failure for outputs that cannot be written, before anything is measured.
-std::unique_ptr<ClipOutput> open_outputs(const ClipCommand &o, Events &events) {
-    if (o.levelled.empty()) {
-        if (!o.to.empty() || !o.codec.name.empty())
-            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(o.to.empty() ? "--codec" : "--to")
-                                                       + ": is for levelled frames; give --frames, too");
-        check_output_folder(o.output);
-        return nullptr;
-    }
-    if (!o.to.empty() && o.to != "mean" && o.to != "first" && frame_number(o.to) == 0)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": is neither mean, first nor the number of a frame");
-    check_output_folder(o.output);
-    auto levelled = std::make_unique<ClipOutput>(o.input, o.levelled, o.codec, o.overwrite, events);
-    if (levelled->is_video() && o.frames_per_s > 0.0)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      o.levelled + ": a video has all frames of its source; omit --fps, or give the name of a folder");
-    return levelled;
-}
-
-void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
-                    Streams &streams, Events &events) {
-    const auto wanted = wanted_exposures(o.to, clip);
-    const auto unmeasured = write_levelled_frames(fit, clip, wanted, rate, output, events);
-    if (wanted.size() > 1 && frame_number(o.to) > 0)
-        note(streams, o.levelled + ": scenes without the frame " + o.to + " have their mean exposure");
-    if (unmeasured.empty()) return;
-    std::vector<std::string> names;
-    for (size_t i = 0; i < clip.frames.size(); i++) names.push_back(output.name_of(i));
-    note(streams, o.levelled + ": " + (output.is_video() ? "not levelled" : "left out")
-                      + ", because the exposure is not measured: " + listed(unmeasured, names));
-}
-
 }  // namespace
 
 bool is_frame_folder(const std::string &path) {
-    return is_folder(path) && is_folder((std::filesystem::path(path) / "images").string())
-           && path_exists((std::filesystem::path(path) / "times.txt").string());
+    if (!is_folder(path)) return false;
+    return has_transforms(path)
+           || (is_folder((std::filesystem::path(path) / "images").string())
+               && path_exists((std::filesystem::path(path) / "times.txt").string()));
 }
 
 int calibrate_clip(const ClipCommand &o, Streams &streams) {
     Progress events(streams, o.progress);
-    const auto levelled = open_outputs(o, events);
+    check_output_folder(o.output);
+    const auto levelled = open_levelled(o, events);
     const bool is_of_pictures = is_folder(o.input);
     const double rate = is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate;
     const auto source = open_frames(o.input, rate, events);
@@ -205,6 +178,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     ClipOptions options;
     std::string times = o.times;
     if (times.empty() && is_frame_folder(o.input)) times = (std::filesystem::path(o.input) / "times.txt").string();
+    if (!path_exists(times) && o.times.empty()) times.clear();
     if (!times.empty()) options.known_ev = read_clip_times(times, clip);
     if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
         options.known_ev.clear();
@@ -228,7 +202,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     outputs.commit();
     written.insert(written.end(), tables.begin(), tables.end());
     if (levelled && fit.best.corrects()) {
-        write_levelled(o, fit, clip, rate, *levelled, streams, events);
+        write_levelled(o, fit, clip, rate, *levelled, events);
         written.push_back(o.levelled);
     }
     const double times_error_ev = error_of_times(clip, options.known_ev);

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/correct/clip_output.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/clip/clip_calibration.hpp"
 
@@ -28,17 +27,6 @@ std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip,
 // times.txt, exposures.csv and exposures.svg.
 std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
                                          OutputFiles &outputs);
-
-// The exposure that levelled frames have, per segment: its mean (`to` is mean or empty), that of its first frame that is
-// measured (first), or that of a frame named by its number, for its segment alone. Failure (usage) for a frame that the
-// clip does not have or that is not measured.
-std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip);
-
-// Decodes the clip again and writes its frames at the wanted exposure of their segment without falloff. Frames that are
-// not measured are left out of a folder, and unchanged in a video. Returns their numbers, from 0.
-std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks &clip,
-                                            const std::vector<lensprof_exposure> &wanted, double frames_per_s,
-                                            ClipOutput &output, Events &events);
 
 const char *clip_state_name(ClipState state);
 

@@ -183,6 +183,11 @@ private:
     void written(int code) const {
         if (code < 0) throw Failure(LENSPROF_ERROR_WRITE, path_ + ": cannot be written: " + text_of_error(code));
     }
+    // That of the source, if it is another one.
+    std::string fitting_suffix() const {
+        const std::string suffix = lowercase_extension(source_);
+        return suffix == lowercase_extension(path_) || (suffix != "mp4" && suffix != "mov") ? "mkv" : suffix;
+    }
     void open_source();
     void open_encoder(const VideoCodec &codec, Events &events);
     void set_colours(AVPixelFormat stored);
@@ -306,8 +311,8 @@ bool VideoWriter::Encoder::add_copy(unsigned index, Events &events) {
         + (stated.codec_id == AV_CODEC_ID_NONE ? "" : std::string(" (") + avcodec_get_name(stated.codec_id) + ")");
     if (avformat_query_codec(to_->oformat, stated.codec_id, FF_COMPLIANCE_NORMAL) != 1) {
         if (type != AVMEDIA_TYPE_DATA && type != AVMEDIA_TYPE_ATTACHMENT && type != AVMEDIA_TYPE_UNKNOWN)
-            refuse("a file of this suffix does not hold the " + what + " of " + source_
-                   + "; give a name with .mkv, or the suffix of the source");
+            refuse("a file of this suffix does not hold the " + what + " of " + source_ + "; give a name with ."
+                   + fitting_suffix());
         events.note(source_, format("stream %u, ", index) + what + ", is left out, because " + path_ + " cannot hold it");
         return false;
     }
@@ -361,7 +366,8 @@ void VideoWriter::Encoder::write_header() {
     written(avio_open(&to_->pb, ("file:" + output_->temporary()).c_str(), AVIO_FLAG_WRITE));
     const int code = avformat_write_header(to_.get(), options.get());
     if (code == AVERROR(EINVAL) || code == AVERROR_PATCHWELCOME)
-        refuse("a file of this suffix does not hold the streams of " + source_ + "; give a name with .mkv");
+        refuse("a file of this suffix does not hold the streams of " + source_ + "; give a name with ."
+               + fitting_suffix());
     written(code);
 }
 
