@@ -68,9 +68,10 @@ void declare(Command &command, CalibrateOptions &o) {
     command.number("--fps", o.frames_per_s, {0.01, 1000.0},
                    "frames per second that are used of a video; default all. Of a folder their rate; default 25");
     command.file("--times", o.times, "exposure times of the frames: a file of lines with name, time stamp, exposure");
-    command.folder("--frames", o.frames,
-                   "write levelled frames of a video without falloff into this folder, or as a video: a name with .mp4, "
-                   ".mov, .mkv or .webm");
+    command.folder(
+        "--frames", o.frames,
+        "write levelled frames of a video without falloff into this folder, or as a video: a name with .mp4, "
+        ".mov, .mkv or .webm");
     command.word(
         "--to", "mean|first|FRAME", [&o](const std::string &word) { o.to = word; },
         "exposure of the levelled frames: their mean (default), that of the first, or of a frame, by its number");
@@ -126,8 +127,9 @@ bool is_clip(const CalibrateOptions &o) {
 int run(CalibrateOptions &o, Streams &streams) {
     if (is_clip(o)) {
         if (!o.report.empty())
-            throw Failure(LENSPROF_ERROR_ARGUMENT, "--report: there is no page of a clip; omit the option, and see "
-                                                   "exposures.svg in the output folder");
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          "--report: there is no page of a clip; omit the option, and see "
+                          "exposures.svg in the output folder");
         return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.to, o.codec, o.frames_per_s, o.store,
                                o.overwrite, o.json, o.progress},
                               streams);

@@ -102,8 +102,9 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) 
         throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": has a " + transforms_name
                                                    + "; give another name, or replace it with --overwrite");
     // The frames of a transforms.json are in images/, as nerfstudio keeps them.
-    const std::string place =
-        has_transforms(o.input) && !is_video_name(o.levelled) ? (std::filesystem::path(o.levelled) / "images").string() : o.levelled;
+    const std::string place = has_transforms(o.input) && !is_video_name(o.levelled)
+                                  ? (std::filesystem::path(o.levelled) / "images").string()
+                                  : o.levelled;
     auto levelled = std::make_unique<ClipOutput>(o.input, place, o.codec, o.overwrite, events);
     if (levelled->is_video() && o.frames_per_s > 0.0)
         throw Failure(LENSPROF_ERROR_ARGUMENT,

@@ -69,21 +69,22 @@ ClipOutput::ClipOutput(const std::string &source, const std::string &path, const
     if (is_same_file(source, path))
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": is the input; give the output another name");
     if (!codec.name.empty() && is_video == is_picture_codec(codec))
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--codec " + codec.name
-                          + (is_video ? ": is for a folder, but " + path + " is the name of a video; use h264, h265, vp9 or ffv1"
-                                      : ": is for a video, but " + path + " is the name of a folder; use png or jpeg, or "
-                                                                          "give a name with .mp4 or .mkv"));
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            "--codec " + codec.name
+                + (is_video ? ": is for a folder, but " + path + " is the name of a video; use h264, h265, vp9 or ffv1"
+                            : ": is for a video, but " + path
+                                  + " is the name of a folder; use png or jpeg, or "
+                                    "give a name with .mp4 or .mkv"));
     if (!is_video) {
         check_output_folder(path);
         return;
     }
     if (is_folder(source))
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      path + ": a video is written of a video, but " + source + " is a folder; give the name of a folder");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": a video is written of a video, but " + source
+                                                   + " is a folder; give the name of a folder");
     if (path_exists(path) && !overwrite)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      path + ": exists; give another name, or replace it with --overwrite");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": exists; give another name, or replace it with --overwrite");
     writer_ = std::make_unique<VideoWriter>(source, path, codec, events);
     suffix_.clear();
 }
@@ -127,8 +128,9 @@ Json ClipOutput::json() const {
 
 std::string ClipOutput::text() const {
     if (!loss_) return {};
-    return format("coding    %s, %s: decoded, frames differ by %.2f levels of 255 on average (%.2f in the worst frame)\n",
-                  loss_->codec.c_str(), loss_->pixels.c_str(), loss_->mean, loss_->largest);
+    return format(
+        "coding    %s, %s: decoded, frames differ by %.2f levels of 255 on average (%.2f in the worst frame)\n",
+        loss_->codec.c_str(), loss_->pixels.c_str(), loss_->mean, loss_->largest);
 }
 
 }  // namespace lensprof

@@ -23,8 +23,8 @@ size_t frame_number(const std::string &word);
 
 class ClipOutput {
 public:
-    // Failure before anything is measured: of VideoWriter, and (usage) for an output that is the source, or a video that
-    // exists without `overwrite`; (failed) for a folder that cannot be written.
+    // Failure before anything is measured: of VideoWriter, and (usage) for an output that is the source, or a video
+    // that exists without `overwrite`; (failed) for a folder that cannot be written.
     ClipOutput(const std::string &source, const std::string &path, const ClipCodec &codec, bool overwrite,
                Events &events);
 

@@ -351,8 +351,9 @@ void print_result(const DeflickerOptions &o, const Levels &levels, const std::ve
 // Options that a video cannot take.
 void check_clip_options(const DeflickerOptions &o) {
     if (o.keep_light)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      o.files[0] + ": --keep-light needs the exposures of the frames, which a video does not state; omit it");
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            o.files[0] + ": --keep-light needs the exposures of the frames, which a video does not state; omit it");
     if (o.writes(Write::xmp) || o.writes(Write::pp3))
         throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[0]
                                                    + ": --write xmp and pp3 are settings of raw files, which a video "

@@ -1,13 +1,10 @@
 #include "cli/correct/deflicker_clip.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 
 #include "photo/base/format.hpp"
-#include "photo/base/output_file.hpp"
-#include "photo/base/paths.hpp"
+#include "photo/base/memory_file.hpp"
 #include "photo/video/video.hpp"
 
 namespace lensprof {
@@ -59,43 +56,17 @@ MeasuredSequence measure_with_response(const std::string &clip, const MeasureOpt
     }
     events.clear();
     if (count < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, clip + ": has only one frame; give a clip",
-                      LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, clip + ": has only one frame; give a clip", LENSPROF_REASON_FEW_PAIRS);
     take_measurement(clip, count, measured);
     if (measured.result.moving) fail_moving_clip(clip, measured.result.motion);
     return measured;
 }
 
-// A folder for frames that are compared, removed with them.
-class FrameFolder {
-public:
-    FrameFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lensprof-frames-XXXXXX").string();
-        if (!mkdtemp(name.data()))
-            throw Failure(LENSPROF_ERROR_WRITE,
-                          name + ": cannot be created: " + system_text(errno) + "; set TMPDIR to a folder with space");
-        path_ = name;
-    }
-    ~FrameFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    FrameFolder(const FrameFolder &) = delete;
-    FrameFolder &operator=(const FrameFolder &) = delete;
-
-    std::string file(const std::string &name) const {
-        return (path_ / std::filesystem::path(name).stem()).string() + ".png";
-    }
-
-private:
-    std::filesystem::path path_;
-};
-
 // The measurement of frames of all exposures, with the response that fits them.
 MeasuredSequence measure_some(const std::string &clip, const MeasureOptions &o, const FrameSequence &sequence,
                               const MeasuredSequence &measured, Events &events) {
     const auto names = frames_of_all_exposures(sequence, measured.frames, most_compared);
-    const FrameFolder folder;
+    const TemporaryFolder folder;
     FrameSequence some;
     VideoReader reader(clip);
     const VideoInfo &info = reader.info();
@@ -105,13 +76,15 @@ MeasuredSequence measure_some(const std::string &clip, const MeasureOptions &o, 
         if (std::find(names.begin(), names.end(), name) == names.end()) continue;
         reader.read(frame.picture);
         frame.picture.traits = PictureTraits();
-        write_picture(folder.file(name), frame.picture);
-        PictureMetadata metadata = read_metadata(folder.file(name));
+        const std::string file =
+            (std::filesystem::path(folder.path()) / std::filesystem::path(name).stem()).string() + ".png";
+        write_picture(file, frame.picture);
+        PictureMetadata metadata = read_metadata(file);
         metadata.size = {info.width, info.height};
         set_text(metadata.key.camera_maker, sizeof metadata.key.camera_maker, info.camera_maker);
         set_text(metadata.key.camera_model, sizeof metadata.key.camera_model, info.camera_model);
         metadata.key.processing = LENSPROF_PROCESSING_JPEG;
-        some.frames.push_back({folder.file(name), metadata});
+        some.frames.push_back({file, metadata});
     }
     return measure_frames(o, some, events);
 }

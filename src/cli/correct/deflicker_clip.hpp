@@ -11,8 +11,8 @@
 namespace lensprof {
 
 // Decodes the clip and measures all frames, which are named as in `output`. The response is the given one, else as of
-// measure_frames: where sRGB does not fit, a dozen frames of different exposures decide, and the clip is measured again.
-// Failure (not usable) for a moving camera and a single frame.
+// measure_frames: where sRGB does not fit, a dozen frames of different exposures decide, and the clip is measured
+// again. Failure (not usable) for a moving camera and a single frame.
 MeasuredSequence measure_clip(const std::string &clip, const MeasureOptions &options, const ClipOutput &output,
                               FrameSequence &sequence, Events &events);
 

@@ -55,7 +55,6 @@ inline bool is_full_range(AVColorRange stated, AVPixelFormat format) {
     return (name && std::string(name).rfind("yuvj", 0) == 0) || is_rgb(format);
 }
 
-constexpr int scaler_flags =
-    SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
+constexpr int scaler_flags = SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
 
 }  // namespace lensprof

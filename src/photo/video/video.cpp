@@ -232,7 +232,8 @@ void VideoReader::Decoder::convert(Picture &picture) {
     const bool is_deep = info.sample == LENSPROF_SAMPLE_U16;
     if (wanted != scaler_for_) {
         scaler_.reset(sws_getContext(frame_->width, frame_->height, stored, frame_->width, frame_->height,
-                                     is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24, scaler_flags, nullptr, nullptr, nullptr));
+                                     is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24, scaler_flags, nullptr, nullptr,
+                                     nullptr));
         if (!scaler_)
             fail(std::string(av_get_pix_fmt_name(stored))
                  + " pixels cannot be converted to RGB; convert the video to yuv420p first");

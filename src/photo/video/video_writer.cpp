@@ -179,7 +179,9 @@ struct VideoWriter::Encoder {
     VideoLoss finish();
 
 private:
-    [[noreturn]] void refuse(const std::string &what) const { throw Failure(LENSPROF_ERROR_ARGUMENT, path_ + ": " + what); }
+    [[noreturn]] void refuse(const std::string &what) const {
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path_ + ": " + what);
+    }
     void written(int code) const {
         if (code < 0) throw Failure(LENSPROF_ERROR_WRITE, path_ + ": cannot be written: " + text_of_error(code));
     }
@@ -189,10 +191,10 @@ private:
         return suffix == lowercase_extension(path_) || (suffix != "mp4" && suffix != "mov") ? "mkv" : suffix;
     }
     void open_source();
-    void open_encoder(const VideoCodec &codec, Events &events);
+    void open_encoder(const VideoCodec &codec);
     void set_colours(AVPixelFormat stored);
-    void add_streams(Events &events);
-    bool add_copy(unsigned index, Events &events);
+    void add_streams();
+    bool add_copy(unsigned index);
     void write_header();
     void convert(const Picture &picture, AVFrame &frame);
     void copy_until(double seconds);
@@ -200,6 +202,7 @@ private:
     VideoLoss measured() const;
 
     std::string source_, path_;
+    Events &events_;
     std::unique_ptr<OutputFile> output_;
     Libav<AVFormatContext> from_;
     std::unique_ptr<AVFormatContext, OutputClose> to_;
@@ -207,7 +210,7 @@ private:
     Libav<SwsContext> scaler_;
     Libav<AVPacket> coded_{av_packet_alloc()}, copied_{av_packet_alloc()};
     int stream_ = -1;
-    std::vector<int> stream_of_;  // of the output, for each of the source; -1: none
+    std::vector<int> stream_of_;                     // of the output, for each of the source; -1: none
     bool is_copy_held_ = false, is_copied_ = false;  // copied_ holds the next packet; all were copied
     std::optional<int64_t> last_time_;
     std::map<int64_t, int64_t> durations_;  // by time stamp, of the frames in the encoder
@@ -218,8 +221,8 @@ private:
 
 VideoWriter::Encoder::Encoder(const std::string &source, const std::string &path, const VideoCodec &codec,
                               Events &events)
-    : source_(source), path_(path) {
-    av_log_set_level(AV_LOG_QUIET);
+    : source_(source), path_(path), events_(events) {
+    VideoReader{source};  // fails for what is not a readable video, with its reason
     if (!coded_ || !copied_) throw std::bad_alloc();
     open_source();
     AVFormatContext *file = nullptr;
@@ -227,8 +230,8 @@ VideoWriter::Encoder::Encoder(const std::string &source, const std::string &path
         refuse("the installed libavformat does not write such files; give a name with another suffix");
     to_.reset(file);
     to_->flags |= AVFMT_FLAG_BITEXACT;
-    open_encoder(codec, events);
-    add_streams(events);
+    open_encoder(codec);
+    add_streams();
     output_ = std::make_unique<OutputFile>(path);
     write_header();
 }
@@ -258,7 +261,7 @@ void VideoWriter::Encoder::set_colours(AVPixelFormat stored) {
     }
 }
 
-void VideoWriter::Encoder::open_encoder(const VideoCodec &codec, Events &events) {
+void VideoWriter::Encoder::open_encoder(const VideoCodec &codec) {
     const AVStream &stream = *from_->streams[stream_];
     const AVCodecParameters &stated = *stream.codecpar;
     const auto stored = static_cast<AVPixelFormat>(stated.format);
@@ -280,7 +283,8 @@ void VideoWriter::Encoder::open_encoder(const VideoCodec &codec, Events &events)
     codec_->width = stated.width, codec_->height = stated.height;
     codec_->pix_fmt = nearest_format(*encoder, stored);
     codec_->time_base = stream.time_base, codec_->framerate = stream.avg_frame_rate;
-    codec_->sample_aspect_ratio = stream.sample_aspect_ratio.num ? stream.sample_aspect_ratio : stated.sample_aspect_ratio;
+    codec_->sample_aspect_ratio =
+        stream.sample_aspect_ratio.num ? stream.sample_aspect_ratio : stated.sample_aspect_ratio;
     codec_->field_order = stated.field_order;
     codec_->thread_count = coding_threads, codec_->bit_rate = 0;
     codec_->flags |= AV_CODEC_FLAG_BITEXACT;
@@ -296,24 +300,29 @@ void VideoWriter::Encoder::open_encoder(const VideoCodec &codec, Events &events)
         refuse(format("%s cannot code frames of %d x %d pixels in %s (%s); choose another codec", coding.encoder,
                       stated.width, stated.height, av_get_pix_fmt_name(codec_->pix_fmt), text_of_error(code).c_str()));
     if (codec_->pix_fmt != plain_format(stored))
-        events.note(path_, std::string("its pixels are ") + av_get_pix_fmt_name(codec_->pix_fmt) + ", not "
-                               + av_get_pix_fmt_name(stored) + " as those of the source, which " + coding.encoder
-                               + " does not code");
+        events_.note(path_, std::string("its pixels are ") + av_get_pix_fmt_name(codec_->pix_fmt) + ", not "
+                                + av_get_pix_fmt_name(stored) + " as those of the source, which " + coding.encoder
+                                + " does not code");
 }
 
 // A copy of another stream; false if it has no place in the container and can be left out.
-bool VideoWriter::Encoder::add_copy(unsigned index, Events &events) {
+bool VideoWriter::Encoder::add_copy(unsigned index) {
     const AVStream &stream = *from_->streams[index];
     const AVCodecParameters &stated = *stream.codecpar;
     const AVMediaType type = stated.codec_type;
     const std::string what =
         std::string(kind_of(stream))
         + (stated.codec_id == AV_CODEC_ID_NONE ? "" : std::string(" (") + avcodec_get_name(stated.codec_id) + ")");
+    // Titles of chapters and time codes, which libavformat writes with the chapters and tags.
+    if (type == AVMEDIA_TYPE_DATA
+        && (stated.codec_tag == MKTAG('t', 'e', 'x', 't') || stated.codec_tag == MKTAG('t', 'm', 'c', 'd')))
+        return false;
     if (avformat_query_codec(to_->oformat, stated.codec_id, FF_COMPLIANCE_NORMAL) != 1) {
         if (type != AVMEDIA_TYPE_DATA && type != AVMEDIA_TYPE_ATTACHMENT && type != AVMEDIA_TYPE_UNKNOWN)
             refuse("a file of this suffix does not hold the " + what + " of " + source_ + "; give a name with ."
                    + fitting_suffix());
-        events.note(source_, format("stream %u, ", index) + what + ", is left out, because " + path_ + " cannot hold it");
+        events_.note(source_,
+                     format("stream %u, ", index) + what + ", is left out, because " + path_ + " cannot hold it");
         return false;
     }
     AVStream *copy = avformat_new_stream(to_.get(), nullptr);
@@ -327,16 +336,16 @@ bool VideoWriter::Encoder::add_copy(unsigned index, Events &events) {
     if (type == AVMEDIA_TYPE_VIDEO) {
         copy_shape_data(stream, *copy);
         if (!(stream.disposition & AV_DISPOSITION_ATTACHED_PIC))
-            events.note(source_, format("has a second video, stream %u, which is copied as it is", index));
+            events_.note(source_, format("has a second video, stream %u, which is copied as it is", index));
     }
     return true;
 }
 
-void VideoWriter::Encoder::add_streams(Events &events) {
+void VideoWriter::Encoder::add_streams() {
     for (unsigned i = 0; i < from_->nb_streams; i++) {
         stream_of_.push_back(static_cast<int>(to_->nb_streams));
         if (int(i) != stream_) {
-            if (!add_copy(i, events)) {
+            if (!add_copy(i)) {
                 stream_of_.back() = -1;
                 from_->streams[i]->discard = AVDISCARD_ALL;
             }
@@ -454,6 +463,9 @@ void VideoWriter::Encoder::copy_until(double seconds) {
 VideoLoss VideoWriter::Encoder::measured() const {
     VideoLoss loss{codec_->codec->name, av_get_pix_fmt_name(codec_->pix_fmt)};
     VideoReader reader(output_->temporary());
+    if (reader.info().orientation != VideoReader(source_).info().orientation)
+        events_.warn(path_, "does not hold the rotation of " + source_
+                                + " with the installed libavformat; give a name with .mp4 to keep it");
     VideoFrame frame;
     auto wanted = sampled_.begin();
     uint64_t frames = 0;
@@ -466,11 +478,11 @@ VideoLoss VideoWriter::Encoder::measured() const {
         loss.largest = std::max(loss.largest, difference);
     }
     if (frames != frames_)
-        throw Failure(LENSPROF_ERROR_WRITE, path_
-                                                + format(": %llu frames were coded, but %llu are read back; choose "
-                                                         "another codec or suffix",
-                                                         static_cast<unsigned long long>(frames_),
-                                                         static_cast<unsigned long long>(frames)));
+        throw Failure(LENSPROF_ERROR_WRITE,
+                      path_
+                          + format(": %llu frames were coded, but %llu are read back; choose "
+                                   "another codec or suffix",
+                                   static_cast<unsigned long long>(frames_), static_cast<unsigned long long>(frames)));
     return loss;
 }
 
