@@ -253,7 +253,12 @@ void test_moving_video(void **) {
     assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--to", "3"}, {"--to: is for levelled frames"});
     assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--report", in_folder("x.html")},
                    {"--report: there is no page of a clip", "exposures.svg"});
+    assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--one-lens"}, {"--one-lens: is for pictures"});
     assert_refused(usage, words + Words{source}, {"moving.mp4: is the input"});
+    for (const auto &[frame, reason] :
+         {std::pair{"13", "this frame is blank"}, {"99", "has 30 frames"}, {"x", "neither"}})
+        assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--frames", in_folder("y"), "--to", frame},
+                       {std::string("--to ") + frame + ": ", reason});
 }
 
 // The frames that transforms.json lists, with their poses afterwards.
@@ -319,7 +324,7 @@ int set_up(void **state) {
     if (make_folder(state) != 0) return 1;
     write_frames("still", still_frames, 0.0, false);
     write_frames("moving", moving_frames, 9.0, true);
-    write_frames("linear", 12, 0.0, false, 1.0);
+    write_frames("linear", 20, 0.0, false, 1.0);
     return 0;
 }
 

@@ -130,6 +130,9 @@ int run(CalibrateOptions &o, Streams &streams) {
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "--report: there is no page of a clip; omit the option, and see "
                           "exposures.svg in the output folder");
+        if (o.one_lens)
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          "--one-lens: is for pictures, and a clip has one lens; omit the option");
         return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.to, o.codec, o.frames_per_s, o.store,
                                o.overwrite, o.json, o.progress},
                               streams);

@@ -184,6 +184,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
         options.known_ev.clear();
     const lensprof_profile_key key = clip_key(clip.info);
     ClipFit fit = fit_clip(options, key, clip, events);
+    check_wanted(o, clip);
     events.clear();
     const Tally tally(clip);
     StoreOptions store = o.store;

@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 // The exposure that levelled frames have, per segment: its mean, that of its first frame that is measured, or that of a
-// frame, for its segment alone. Failure (usage) for a frame that the clip does not have or that is not measured.
+// frame, for its segment alone.
 std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip) {
     std::vector<lensprof_exposure> wanted;
     const size_t named = to == "mean" || to == "first" || to.empty() ? 0 : frame_number(to);
@@ -25,8 +25,8 @@ std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const Cli
     }
     if (named == 0) return wanted;
     if (named > clip.frames.size())
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--to " + to + ": " + clip.path + " has " + counted(clip.frames.size(), "frame"));
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + to + ": " + clip.path + " has "
+                                                   + counted(clip.frames.size(), "frame") + "; name one of them");
     const ClipFrame &frame = clip.frames[named - 1];
     if (frame.state != ClipState::measured)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
@@ -111,6 +111,8 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) 
                       o.levelled + ": a video has all frames of its source; omit --fps, or give the name of a folder");
     return levelled;
 }
+
+void check_wanted(const ClipCommand &o, const ClipTracks &clip) { wanted_exposures(o.to, clip); }
 
 void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
                     Events &events) {

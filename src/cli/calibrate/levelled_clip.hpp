@@ -12,6 +12,9 @@ namespace lensprof {
 // for options that do not fit them.
 std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events);
 
+// Failure (usage) for a frame in `to` that the clip does not have, or that is not measured.
+void check_wanted(const ClipCommand &o, const ClipTracks &clip);
+
 // Writes them, with notes of those that are not measured. `rate`: frames per second of a folder.
 void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
                     Events &events);
