@@ -231,12 +231,13 @@ void test_moving_video(void **) {
                 "-vf drawbox=t=fill:color=black:enable='between(n\\,12\\,13)' -c:v libx264 -crf 8 "
                 "-pix_fmt yuv420p");
     const Words words = {"calibrate", source, "-o", in_folder("model"), "--no-store", "--frames"};
-    const Outcome outcome = run_words(words + Words{in_folder("levelled.mkv"), "--to", "first", "--codec", "ffv1"});
+    const Outcome outcome =
+        run_words(words + Words{in_folder("model/levelled.mkv"), "--to", "first", "--codec", "ffv1"});
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err,
                          "levelled.mkv: not levelled, because the exposure is not measured: frame_00013, "
                          "frame_00014"));
-    const auto before = frames_of("moving.mp4"), after = frames_of("levelled.mkv");
+    const auto before = frames_of("moving.mp4"), after = frames_of("model/levelled.mkv");
     assert_int_equal(after.size(), moving_frames);
     assert_true(mean_difference(before[12].picture, after[12].picture) < 1.0);
     // The middle of the first frame keeps its level, the corner becomes brighter.

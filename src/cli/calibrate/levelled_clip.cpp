@@ -105,6 +105,7 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) 
     const std::string place = has_transforms(o.input) && !is_video_name(o.levelled)
                                   ? (std::filesystem::path(o.levelled) / "images").string()
                                   : o.levelled;
+    if (is_in_new_folder(o.levelled, o.output)) make_folder(o.output);
     auto levelled = std::make_unique<ClipOutput>(o.input, place, o.codec, o.overwrite, events);
     if (levelled->is_video() && o.frames_per_s > 0.0)
         throw Failure(LENSPROF_ERROR_ARGUMENT,

@@ -440,10 +440,14 @@ void VideoWriter::Encoder::encode(const AVFrame *frame) {
 // Copies the packets of the other streams up to a time.
 void VideoWriter::Encoder::copy_until(double seconds) {
     while (!is_copied_) {
-        if (!is_copy_held_ && av_read_frame(from_.get(), copied_.get()) < 0) {
+        const int code = is_copy_held_ ? 0 : av_read_frame(from_.get(), copied_.get());
+        if (code == AVERROR_EOF) {
             is_copied_ = true;
             return;
         }
+        if (code < 0)
+            throw Failure(LENSPROF_ERROR_READ, source_ + ": its sound or other data cannot be read: "
+                                                   + text_of_error(code) + "; copy the file again");
         const auto stream = static_cast<size_t>(copied_->stream_index);
         is_copy_held_ = true;
         const AVRational base = from_->streams[stream]->time_base;
