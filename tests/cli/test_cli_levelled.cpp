@@ -183,6 +183,8 @@ void test_video_refusals(void **) {
     refused(not_usable, "one.mp4", {"-o", out}, {"has only one frame"});
     assert_refused(usage, {"deflicker", in_folder("still/images"), "-o", in_folder("o"), "--codec", "png"},
                    {"--codec: is for a video"});
+    assert_refused(usage, {"deflicker", in_folder("still/images"), "-o", out},
+                   {"out.mp4: a video is written of a video"});
     const Disk before = disk();
     const Words words = Words{"deflicker", source, "-o", out} + known;
     assert_refusal(words,

@@ -1,6 +1,7 @@
 #include "cli/correct/clip_output.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -39,7 +40,7 @@ Picture with_8_bits(const Picture &deep) {
     picture.pixels.resize(deep.pixels.size() / 2);
     for (size_t n = 0; n < picture.pixels.size(); n++)
         picture.pixels[n] =
-            static_cast<uint8_t>(255.0 * sample_value(LENSPROF_SAMPLE_U16, deep.pixels.data(), n) + 0.5);
+            static_cast<uint8_t>(std::lround(255.0 * sample_value(LENSPROF_SAMPLE_U16, deep.pixels.data(), n)));
     return picture;
 }
 

@@ -389,6 +389,9 @@ int run_pictures(const DeflickerOptions &o, Streams &streams) {
     if (!o.codec.name.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--codec: is for a video; copies of pictures keep their format, so omit the option");
+    if (!is_folder(o.folder()) && is_video_name(o.folder()))
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.folder() + ": a video is written of a video; give the name of a folder for copies of pictures");
     Progress progress(streams, o.progress);
     Levels levels;
     levels.sequence = list_frames(o.files, o.folder(), progress);

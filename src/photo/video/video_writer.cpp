@@ -196,6 +196,7 @@ private:
     void add_streams();
     bool add_copy(unsigned index);
     void write_header();
+    void open_scaler(AVPixelFormat rgb);
     void convert(const Picture &picture, AVFrame &frame);
     void copy_until(double seconds);
     void encode(const AVFrame *frame);
@@ -208,6 +209,7 @@ private:
     std::unique_ptr<AVFormatContext, OutputClose> to_;
     Libav<AVCodecContext> codec_;
     Libav<SwsContext> scaler_;
+    Libav<AVFrame> padded_;
     Libav<AVPacket> coded_{av_packet_alloc()}, copied_{av_packet_alloc()};
     int stream_ = -1;
     std::vector<int> stream_of_;                     // of the output, for each of the source; -1: none
@@ -222,7 +224,7 @@ private:
 VideoWriter::Encoder::Encoder(const std::string &source, const std::string &path, const VideoCodec &codec,
                               Events &events)
     : source_(source), path_(path), events_(events) {
-    VideoReader{source};  // fails for what is not a readable video, with its reason
+    const VideoReader readable(source);  // else its failure states why
     if (!coded_ || !copied_) throw std::bad_alloc();
     open_source();
     AVFormatContext *file = nullptr;
@@ -380,26 +382,32 @@ void VideoWriter::Encoder::write_header() {
     written(code);
 }
 
+// Opens the conversion, and a frame for RGB: libswscale reads beyond the rows that it converts.
+void VideoWriter::Encoder::open_scaler(AVPixelFormat rgb) {
+    scaler_.reset(sws_getContext(codec_->width, codec_->height, rgb, codec_->width, codec_->height, codec_->pix_fmt,
+                                 scaler_flags, nullptr, nullptr, nullptr));
+    if (!scaler_) refuse(std::string("RGB is not converted to ") + av_get_pix_fmt_name(codec_->pix_fmt));
+    const int *numbers = sws_getCoefficients(matrix_of(codec_->colorspace, codec_->width, codec_->height));
+    sws_setColorspaceDetails(scaler_.get(), numbers, 1, numbers, is_full_range(codec_->color_range, codec_->pix_fmt), 0,
+                             1 << 16, 1 << 16);
+    padded_.reset(av_frame_alloc());
+    if (!padded_) throw std::bad_alloc();
+    padded_->format = rgb, padded_->width = codec_->width, padded_->height = codec_->height;
+    if (av_frame_get_buffer(padded_.get(), 0) < 0) throw std::bad_alloc();
+}
+
 void VideoWriter::Encoder::convert(const Picture &picture, AVFrame &frame) {
-    const bool is_deep = picture.sample == LENSPROF_SAMPLE_U16;
-    if (!scaler_) {
-        scaler_.reset(sws_getContext(codec_->width, codec_->height, is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24,
-                                     codec_->width, codec_->height, codec_->pix_fmt, scaler_flags, nullptr, nullptr,
-                                     nullptr));
-        if (!scaler_) refuse(std::string("RGB is not converted to ") + av_get_pix_fmt_name(codec_->pix_fmt));
-        const int *numbers = sws_getCoefficients(matrix_of(codec_->colorspace, codec_->width, codec_->height));
-        sws_setColorspaceDetails(scaler_.get(), numbers, 1, numbers,
-                                 is_full_range(codec_->color_range, codec_->pix_fmt), 0, 1 << 16, 1 << 16);
-    }
+    if (!scaler_) open_scaler(picture.sample == LENSPROF_SAMPLE_U16 ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24);
+    const int row_bytes = static_cast<int>(picture.row_bytes);
+    av_image_copy_plane(padded_->data[0], padded_->linesize[0], picture.pixels.data(), row_bytes, row_bytes,
+                        padded_->height);
     frame.format = codec_->pix_fmt, frame.width = codec_->width, frame.height = codec_->height;
     frame.colorspace = codec_->colorspace, frame.color_range = codec_->color_range;
     frame.color_primaries = codec_->color_primaries, frame.color_trc = codec_->color_trc;
     frame.chroma_location = codec_->chroma_sample_location;
     frame.sample_aspect_ratio = codec_->sample_aspect_ratio;
     if (av_frame_get_buffer(&frame, 0) < 0) throw std::bad_alloc();
-    const uint8_t *rows[4] = {picture.pixels.data(), nullptr, nullptr, nullptr};
-    const int row_bytes[4] = {static_cast<int>(picture.row_bytes), 0, 0, 0};
-    sws_scale(scaler_.get(), rows, row_bytes, 0, frame.height, frame.data, frame.linesize);
+    sws_scale(scaler_.get(), padded_->data, padded_->linesize, 0, frame.height, frame.data, frame.linesize);
 }
 
 void VideoWriter::Encoder::write(const VideoFrame &frame, size_t frames) {
