@@ -26,7 +26,8 @@ namespace {
 
 struct CalibrateOptions : FolderOptions {
     std::string report;
-    std::string times, frames;  // of a clip, as the next two
+    std::string times, frames, to;  // of a clip, as the next three
+    ClipCodec codec;
     double frames_per_s = 0.0;
     bool is_moving = false;
     bool json = false, progress = false;
@@ -67,7 +68,14 @@ void declare(Command &command, CalibrateOptions &o) {
     command.number("--fps", o.frames_per_s, {0.01, 1000.0},
                    "frames per second that are used of a video; default all. Of a folder their rate; default 25");
     command.file("--times", o.times, "exposure times of the frames: a file of lines with name, time stamp, exposure");
-    command.folder("--frames", o.frames, "write levelled frames of a video without falloff into this folder, as PNG");
+    command.folder(
+        "--frames", o.frames,
+        "write levelled frames of a video without falloff into this folder, or as a video: a name with .mp4, "
+        ".mov, .mkv or .webm");
+    command.word(
+        "--to", "mean|first|FRAME", [&o](const std::string &word) { o.to = word; },
+        "exposure of the levelled frames: their mean (default), that of the first, or of a frame, by its number");
+    declare_codec(command, o.codec);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
     command.footer(
@@ -106,7 +114,9 @@ bool is_clip(const CalibrateOptions &o) {
     for (const auto &[is_given, name] : {std::pair{o.is_moving, "--moving"},
                                          {o.frames_per_s > 0.0, "--fps"},
                                          {!o.times.empty(), "--times"},
-                                         {!o.frames.empty(), "--frames"}})
+                                         {!o.frames.empty(), "--frames"},
+                                         {!o.to.empty(), "--to"},
+                                         {!o.codec.name.empty(), "--codec"}})
         if (is_given)
             throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(name)
                                                        + ": needs one video, or one folder of frames with --moving; give "
@@ -117,8 +127,14 @@ bool is_clip(const CalibrateOptions &o) {
 int run(CalibrateOptions &o, Streams &streams) {
     if (is_clip(o)) {
         if (!o.report.empty())
-            throw Failure(LENSPROF_ERROR_ARGUMENT, "--report: there is no page of a clip; omit the option");
-        return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.frames_per_s, o.store, o.json, o.progress},
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          "--report: there is no page of a clip; omit the option, and see "
+                          "exposures.svg in the output folder");
+        if (o.one_lens)
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          "--one-lens: is for pictures, and a clip has one lens; omit the option");
+        return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.to, o.codec, o.frames_per_s, o.store,
+                               o.overwrite, o.json, o.progress},
                               streams);
     }
     Progress events(streams, o.progress);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/calibrate/clip_files.hpp"
+#include "cli/calibrate/levelled_clip.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/progress.hpp"
@@ -15,6 +16,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/outcome.hpp"
+#include "photo/clip/transforms_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -114,7 +116,7 @@ void report_times(const ClipTracks &clip, double error_ev, Streams &streams) {
 }
 
 Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally,
-               const std::vector<std::string> &written) {
+               const std::vector<std::string> &written, const ClipOutput *levelled) {
     Json frames = Json::array();
     for (const ClipFrame &frame : clip.frames)
         frames.push_back({{"seconds", frame.seconds},
@@ -135,11 +137,12 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally,
             {"observations", fit.observations},
             {"times_rms_ev", number_or_null(fit.known_error_ev)},
             {"frames", frames},
+            {"video", levelled ? levelled->json() : Json()},
             {"written", written}};
 }
 
 void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, const std::vector<std::string> &written,
-                std::ostream &out) {
+                const ClipOutput *levelled, std::ostream &out) {
     const lensprof_fit_result &result = fit.report.fit;
     out << counted(clip.frames.size(), "frame") << " of " << clip.info.width << " x " << clip.info.height << " pixels, "
         << tally.measured << " measured, " << fit.keyframes.size() << " keyframes in the fit\n"
@@ -147,18 +150,23 @@ void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, 
         << format("corner    %.3f of the light in the middle\n",
                   lensprof_vignetting_eval(&green_falloff(result), 1.0, nullptr))
         << format("residual  %.2f levels of 255\n", result.heldout_rms);
+    if (levelled) out << levelled->text();
     for (const std::string &name : written) out << "written   " << name << "\n";
 }
 
 }  // namespace
 
 bool is_frame_folder(const std::string &path) {
-    return is_folder(path) && is_folder((std::filesystem::path(path) / "images").string())
-           && path_exists((std::filesystem::path(path) / "times.txt").string());
+    if (!is_folder(path)) return false;
+    return has_transforms(path)
+           || (is_folder((std::filesystem::path(path) / "images").string())
+               && path_exists((std::filesystem::path(path) / "times.txt").string()));
 }
 
 int calibrate_clip(const ClipCommand &o, Streams &streams) {
     Progress events(streams, o.progress);
+    check_output_folder(o.output);
+    const auto levelled = open_levelled(o, events);
     const bool is_of_pictures = is_folder(o.input);
     const double rate = is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate;
     const auto source = open_frames(o.input, rate, events);
@@ -170,11 +178,13 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     ClipOptions options;
     std::string times = o.times;
     if (times.empty() && is_frame_folder(o.input)) times = (std::filesystem::path(o.input) / "times.txt").string();
+    if (!path_exists(times) && o.times.empty()) times.clear();
     if (!times.empty()) options.known_ev = read_clip_times(times, clip);
     if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
         options.known_ev.clear();
     const lensprof_profile_key key = clip_key(clip.info);
     ClipFit fit = fit_clip(options, key, clip, events);
+    check_wanted(o, clip);
     events.clear();
     const Tally tally(clip);
     StoreOptions store = o.store;
@@ -192,17 +202,16 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     const auto tables = write_exposures(clip, offset_of_times(clip, options.known_ev), o.output, outputs);
     outputs.commit();
     written.insert(written.end(), tables.begin(), tables.end());
-    if (!o.levelled.empty() && fit.best.corrects()) {
-        make_folder(o.levelled);
-        write_levelled_frames(fit, clip, rate, o.levelled, events);
+    if (levelled && fit.best.corrects()) {
+        write_levelled(o, fit, clip, rate, *levelled, events);
         written.push_back(o.levelled);
     }
     if (o.json) {
         Json json = build_json(fit.report);
-        json["clip"] = clip_json(fit, clip, tally, written);
+        json["clip"] = clip_json(fit, clip, tally, written, levelled.get());
         print_json(json, streams.out);
     } else {
-        print_clip(fit, clip, tally, written, streams.out);
+        print_clip(fit, clip, tally, written, levelled.get(), streams.out);
     }
     report_frames(fit, clip, tally, streams);
     report_times(clip, fit.known_error_ev, streams);

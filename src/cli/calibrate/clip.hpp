@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/correct/clip_output.hpp"
 #include "cli/program/run.hpp"
 #include "photo/calibration/profile_store.hpp"
 
@@ -11,10 +12,12 @@ namespace lensprof {
 struct ClipCommand {
     std::string input, output;
     std::string times;          // file with exposure times; empty: none
-    std::string levelled;       // folder of levelled frames; empty: none are written
+    std::string levelled;       // folder of levelled frames, or a video; empty: none
+    std::string to;             // their exposure: mean (also if empty), first, or the number of a frame
+    ClipCodec codec;            // of those
     double frames_per_s = 0.0;  // taken of a video, or the rate of a folder; 0: all, or 25
     StoreOptions store;
-    bool json = false, progress = false;
+    bool overwrite = false, json = false, progress = false;
 };
 
 // Whether a folder is one as of cameras for visual odometry: images/ and times.txt.

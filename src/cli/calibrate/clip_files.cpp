@@ -120,29 +120,4 @@ std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_e
     return {times, table, chart};
 }
 
-size_t write_levelled_frames(const ClipFit &fit, const ClipTracks &clip, double frames_per_s, const std::string &folder,
-                             Events &events) {
-    const auto profile = fit.profile();
-    const auto source = open_frames(clip.path, frames_per_s, events);
-    size_t done = 0, count = 0;
-    for (VideoFrame frame; done < clip.frames.size() && source->next(frame);) {
-        const ClipFrame &measured = clip.frames[done];
-        if (frame.number != measured.number) continue;
-        done++;
-        if (measured.state != ClipState::measured) continue;
-        stop_if_cancelled();
-        source->read(frame.picture);
-        const std::string name = path_in(folder, format("frame_%05zu.png", done));
-        lensprof_error error{};
-        lensprof_target target = frame.picture.target();
-        check(lensprof_correct(profile.get(), &measured.exposure, &target, &error), name, &error);
-        frame.picture.traits = PictureTraits();
-        write_picture(name, frame.picture);
-        count++;
-        events.update_items("frames", static_cast<uint32_t>(done), static_cast<uint32_t>(clip.frames.size()));
-    }
-    events.clear();
-    return count;
-}
-
 }  // namespace lensprof

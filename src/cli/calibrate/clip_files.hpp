@@ -25,11 +25,6 @@ std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip,
 std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
                                          OutputFiles &outputs);
 
-// The frames at the mean exposure of their segment without falloff: frame_00001.png and so on. Frames that are not
-// measured are left out. Returns the number written.
-size_t write_levelled_frames(const ClipFit &fit, const ClipTracks &clip, double frames_per_s, const std::string &folder,
-                             Events &events);
-
 const char *clip_state_name(ClipState state);
 
 }  // namespace lensprof

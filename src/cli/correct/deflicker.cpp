@@ -44,7 +44,9 @@ struct DeflickerOptions {
     std::vector<Write> write;
     MeasureOptions measure;
     CorrectionKind kind;
+    ClipCodec codec;
 
+    bool is_clip() const { return files.size() == 1 && is_video(files[0]); }
     std::string folder() const { return output.empty() ? "deflickered" : output; }
     bool writes(Write what) const {
         return write.empty() ? what == Write::copies : std::find(write.begin(), write.end(), what) != write.end();
@@ -71,7 +73,9 @@ void declare(Command &command, DeflickerOptions &o) {
     command.files("FILE", o.files, "frames of one stationary camera, a folder of them, or one video");
     command.folder(
         "-o,--output", o.output,
-        "folder for the copies and the table; default deflickered. Of xmp and pp3: default next to the frames");
+        "folder for the copies and the table; default deflickered. Of xmp and pp3: default next to the frames. Of a "
+        "video also a name with .mp4, .mov, .mkv or .webm, for a levelled video");
+    declare_codec(command, o.codec);
     command.word(
         "--to", "smooth|mean|first|FRAME|FILE.csv", [&o](const std::string &word) { o.to = word; },
         "exposure of the frames: a smooth curve through their own (smooth, default), their mean, that of the first or of "
@@ -117,6 +121,9 @@ uint32_t frame_named(const std::string &word, const FrameSequence &sequence) {
     for (uint32_t i = 0; i < sequence.frames.size(); i++)
         if (sequence.frames[i].file == word || std::filesystem::path(sequence.frames[i].file).filename() == word)
             return i;
+    const size_t number = frame_number(word);  // of a video
+    if (number > 0 && number <= sequence.frames.size() && !path_exists(sequence.frames[0].file))
+        return static_cast<uint32_t>(number - 1);
     throw Failure(LENSPROF_ERROR_ARGUMENT,
                   "--to " + word + ": is neither smooth, mean, first, a table (.csv) nor the name of a frame");
 }
@@ -247,34 +254,41 @@ void report_target(const Levels &levels, Streams &streams) {
              "faster ones go");
 }
 
-void write_files(const DeflickerOptions &o, const Levels &levels, std::vector<Correction> &jobs, Progress &progress,
-                 std::vector<std::string> &written) {
+void write_copies(const DeflickerOptions &o, std::vector<Correction> &jobs, Progress &progress) {
     const size_t finished = o.kind.overwrite ? 0 : remove_finished(jobs);
     if (finished > 0) progress.note(o.folder(), counted(finished, "copy", "copies") + " of an earlier run kept");
-    if (!jobs.empty()) {
-        make_folder(o.folder());
-        const Corrected corrected = write_corrected(jobs, o.kind, nullptr, progress);
-        if (!corrected.failed.empty()) throw Failure(corrected.failed[0].failure);
-    }
-    if (o.writes(Write::copies)) written.push_back(o.folder());
+    if (jobs.empty()) return;
+    make_folder(o.folder());
+    const Corrected corrected = write_corrected(jobs, o.kind, nullptr, progress);
+    if (!corrected.failed.empty()) throw Failure(corrected.failed[0].failure);
+}
+
+// exposures.csv in the folder, or NAME.csv next to a video.
+std::string table_name(const DeflickerOptions &o, bool is_of_video) {
+    const std::filesystem::path output(o.folder());
+    if (is_of_video) return std::filesystem::path(output).replace_extension(".csv").string();
+    make_folder(o.folder());
+    return (output / "exposures.csv").string();
+}
+
+void write_exposure_files(const DeflickerOptions &o, const Levels &levels, bool is_to_video,
+                          std::vector<std::string> &written) {
     for (const auto &[kind, format] : {std::pair{Write::xmp, OffsetFormat::xmp}, {Write::pp3, OffsetFormat::pp3}}) {
         if (!o.writes(kind)) continue;
         if (!o.output.empty()) make_folder(o.output);
         const auto files = write_offsets(levels.frames, format, o.output);
         if (!files.empty()) written.push_back(files[0] + (files.size() > 1 ? " and further" : ""));
     }
-    if (o.writes(Write::csv)) {
-        make_folder(o.folder());
-        const std::string name = (std::filesystem::path(o.folder()) / "exposures.csv").string(),
-                          text = offset_table(levels.frames);
+    if (o.writes(Write::csv) || (o.is_clip() && o.write.empty() && !is_to_video)) {
+        const std::string name = table_name(o, is_to_video), text = offset_table(levels.frames);
         write_file(name, text.data(), text.size());
         written.push_back(name);
     }
     if (o.chart.empty()) return;
-    const std::string title = counted(levels.frames.size(), "frame") + ", from "
-                              + std::filesystem::path(levels.frames[0].file).filename().string(),
-                      bytes = exposure_chart(levels.frames, std::isfinite(levels.sequence.frames[0].seconds), title,
-                                             o.chart);
+    const std::string of = o.is_clip() ? " of " + std::filesystem::path(o.files[0]).filename().string()
+                                       : ", from " + std::filesystem::path(levels.frames[0].file).filename().string();
+    const std::string bytes = exposure_chart(levels.frames, std::isfinite(levels.sequence.frames[0].seconds),
+                                             counted(levels.frames.size(), "frame") + of, o.chart);
     write_file(o.chart, bytes.data(), bytes.size());
     written.push_back(o.chart);
 }
@@ -322,17 +336,62 @@ void print_summary(const Levels &levels, const std::vector<std::string> &written
     for (const std::string &name : written) streams.out << "written       " << name << "\n";
 }
 
-int run(const DeflickerOptions &o, Streams &streams) {
-    if (o.files.empty())
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "no frames to level; give a folder, or at least two frames");
-    if (o.keep_light && !o.to.empty())
+void print_result(const DeflickerOptions &o, const Levels &levels, const std::vector<std::string> &written,
+                  const ClipOutput *clip, Streams &streams) {
+    if (o.json) {
+        Json json = report_json(levels, written);
+        if (clip && clip->is_video()) json["video"] = clip->json();
+        print_json(json, streams.out);
+        return;
+    }
+    print_summary(levels, written, streams);
+    if (clip) streams.out << clip->text();
+}
+
+// Options that a video cannot take.
+void check_clip_options(const DeflickerOptions &o) {
+    if (o.keep_light)
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            o.files[0] + ": --keep-light needs the exposures of the frames, which a video does not state; omit it");
+    if (o.writes(Write::xmp) || o.writes(Write::pp3))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[0]
+                                                   + ": --write xmp and pp3 are settings of raw files, which a video "
+                                                     "does not have; write copies or csv");
+}
+
+int run_clip(const DeflickerOptions &o, Streams &streams) {
+    check_clip_options(o);
+    Progress progress(streams, o.progress);
+    const std::string &clip = o.files[0];
+    if (!o.chart.empty()) check_not_reserved(o.chart, "chart", {clip, o.folder()});
+    if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
+    ClipOutput output(clip, o.folder(), o.codec, o.kind.overwrite, progress);
+    Levels levels;
+    levels.measured = measure_clip(clip, o.measure, output, levels.sequence, progress);
+    std::vector<double> curve;
+    levels.target = choose_target(o, levels, curve);
+    levels.frames =
+        levelled_frames(levels.sequence, levels.measured, levels.measured.curve(levels.target, levels.window_s));
+    report_frames(levels, false, streams);
+    report_target(levels, streams);
+    std::vector<std::string> written;
+    if (o.writes(Write::copies)) {
+        write_levelled_clip(clip, levels.frames, levels.measured, output, progress);
+        written.push_back(o.folder());
+    }
+    write_exposure_files(o, levels, output.is_video(), written);
+    print_result(o, levels, written, &output, streams);
+    return static_cast<int>(ExitCode::done);
+}
+
+int run_pictures(const DeflickerOptions &o, Streams &streams) {
+    if (!o.codec.name.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--keep-light and --to exclude each other: both choose the exposure of "
-                      "the frames; give one of them");
-    if (!o.chart.empty()) check_chart_name(o.chart);
-    if (o.files.size() == 1 && is_video(o.files[0]))
-        return deflicker_clip({o.files[0], o.folder(), o.to, o.chart, o.window_s, o.measure, o.json, o.progress},
-                              streams);
+                      "--codec: is for a video; copies of pictures keep their format, so omit the option");
+    if (!is_folder(o.folder()) && is_video_name(o.folder()))
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.folder() + ": a video is written of a video; give the name of a folder for copies of pictures");
     Progress progress(streams, o.progress);
     Levels levels;
     levels.sequence = list_frames(o.files, o.folder(), progress);
@@ -361,11 +420,24 @@ int run(const DeflickerOptions &o, Streams &streams) {
     report_frames(levels, o.writes(Write::xmp), streams);
     report_target(levels, streams);
     std::vector<std::string> written;
-    write_files(o, levels, jobs, progress, written);
+    write_copies(o, jobs, progress);
+    if (o.writes(Write::copies)) written.push_back(o.folder());
+    write_exposure_files(o, levels, false, written);
     progress.clear();
-    o.json ? print_json(report_json(levels, written), streams.out) : print_summary(levels, written, streams);
+    print_result(o, levels, written, nullptr, streams);
     for (const LeftOutFrame &frame : levels.sequence.left_out) print_message(streams, frame.reason + "; left out");
     return static_cast<int>(levels.sequence.left_out.empty() ? ExitCode::done : ExitCode::unreadable);
+}
+
+int run(const DeflickerOptions &o, Streams &streams) {
+    if (o.files.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "no frames to level; give a folder, or at least two frames");
+    if (o.keep_light && !o.to.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--keep-light and --to exclude each other: both choose the exposure of "
+                      "the frames; give one of them");
+    if (!o.chart.empty()) check_chart_name(o.chart);
+    return o.is_clip() ? run_clip(o, streams) : run_pictures(o, streams);
 }
 
 }  // namespace

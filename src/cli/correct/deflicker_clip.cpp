@@ -3,27 +3,44 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-
-#include "cli/correct/exposure_chart.hpp"
-#include "cli/program/exit_code.hpp"
-#include "cli/program/progress.hpp"
-#include "cli/report/drawing.hpp"
 #include "photo/base/format.hpp"
-#include "photo/base/output_file.hpp"
-#include "photo/deflicker/offsets.hpp"
-#include "photo/report/report.hpp"
+#include "photo/base/memory_file.hpp"
 #include "photo/video/video.hpp"
 
 namespace lensprof {
 namespace {
 
-std::string levelled_name(size_t index) { return format("frame_%05zu.png", index + 1); }
+constexpr double fitting_tone_error = 0.03;  // of a response that fits
+constexpr size_t most_compared = 16;         // frames that choose the response
 
-void measure_clip(const DeflickerClip &o, const lensprof_response &response, MeasuredSequence &measured,
-                  Events &events) {
-    VideoReader reader(o.clip);
-    measured.deflicker = new_deflicker(o.measure, {response}, {reader.info().width, reader.info().height});
+void fail_moving_clip(const std::string &clip, double motion) {
+    throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                  clip
+                      + format(": the camera moves by %.1f %% of the frame from frame to frame; use `lensprof "
+                               "calibrate`, which levels frames of a moving camera",
+                               100.0 * motion));
+}
+
+void check_clip_region(const MeasureOptions &o, const std::string &clip, const VideoInfo &info) {
+    const auto &region = o.region_px;
+    if (!region.empty() && (region[0] >= info.width || region[1] >= info.height))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, clip
+                                                   + format(": its frames have %u x %u pixels, but the region begins "
+                                                            "at %u, %u; give one within them",
+                                                            info.width, info.height, region[0], region[1]));
+}
+
+// Measures the clip with a response, and lists its frames if `sequence` is empty.
+MeasuredSequence measure_with_response(const std::string &clip, const MeasureOptions &o,
+                                       const std::shared_ptr<const lensprof_profile> &model, const ClipOutput &output,
+                                       FrameSequence &sequence, Events &events) {
+    VideoReader reader(clip);
+    const VideoInfo &info = reader.info();
+    check_clip_region(o, clip, info);
+    MeasuredSequence measured;
+    measured.model = model;
+    const std::vector<lensprof_response> response(model->response, model->response + model->responses);
+    measured.deflicker = new_deflicker(o, response, {info.width, info.height});
     lensprof_error error{};
     uint32_t count = 0;
     for (VideoFrame frame; reader.next(frame); count++) {
@@ -33,101 +50,82 @@ void measure_clip(const DeflickerClip &o, const lensprof_response &response, Mea
         lensprof_deflicker_facts_init(&facts);
         facts.seconds = frame.seconds;
         const lensprof_image view = frame.picture.view();
-        check(lensprof_deflicker_add(measured.deflicker.get(), &view, &facts, &error), o.clip, &error);
-        events.update_items("measuring", count, static_cast<uint32_t>(reader.info().frames));
+        check(lensprof_deflicker_add(measured.deflicker.get(), &view, &facts, &error), clip, &error);
+        events.update_items("measuring", count, static_cast<uint32_t>(info.frames));
+        if (sequence.frames.size() <= count) sequence.frames.push_back({output.name_of(count), {}, frame.seconds});
     }
     events.clear();
     if (count < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, o.clip + ": has only one frame; give a clip",
-                      LENSPROF_REASON_FEW_PAIRS);
-    take_measurement(o.clip, count, measured);
-    if (measured.result.moving)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      o.clip
-                          + format(": the camera moves by %.1f %% of the frame from frame to frame; use `lensprof "
-                                   "calibrate`, which levels frames of a moving camera",
-                                   100.0 * measured.result.motion));
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, clip + ": has only one frame; give a clip", LENSPROF_REASON_FEW_PAIRS);
+    take_measurement(clip, count, measured);
+    if (measured.result.moving) fail_moving_clip(clip, measured.result.motion);
+    return measured;
 }
 
-lensprof_deflicker_target clip_target(const DeflickerClip &o, const MeasuredSequence &measured) {
-    lensprof_deflicker_target target;
-    lensprof_deflicker_target_init(&target);
-    target.window_s = o.window_s;
-    if (o.to == "mean") {
-        target.to = LENSPROF_TO_MEAN;
-    } else if (o.to == "first") {
-        target.to = LENSPROF_TO_FRAME;
-        target.frame = first_levelled(measured.frames);
-    } else if (!o.to.empty() && o.to != "smooth") {
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": frames of a video are levelled to smooth, mean or "
-                                                             "first; give one of them");
-    }
-    return target;
-}
-
-void write_levelled(const DeflickerClip &o, const lensprof_response &response, const std::vector<LevelledFrame> &frames,
-                    const MeasuredSequence &measured, Events &events) {
-    const auto profile = new_profile();
-    profile->response[0] = response;
-    VideoReader reader(o.clip);
-    VideoFrame frame;
-    for (uint32_t i = 0; i < frames.size() && reader.next(frame); i++) {
+// The measurement of frames of all exposures, with the response that fits them.
+MeasuredSequence measure_some(const std::string &clip, const MeasureOptions &o, const FrameSequence &sequence,
+                              const MeasuredSequence &measured, Events &events) {
+    const auto names = frames_of_all_exposures(sequence, measured.frames, most_compared);
+    const TemporaryFolder folder;
+    FrameSequence some;
+    VideoReader reader(clip);
+    const VideoInfo &info = reader.info();
+    for (VideoFrame frame; reader.next(frame);) {
         stop_if_cancelled();
+        const std::string &name = sequence.frames.at(frame.number).file;
+        if (std::find(names.begin(), names.end(), name) == names.end()) continue;
         reader.read(frame.picture);
-        check(lensprof_deflicker_shading(measured.deflicker.get(), i, &profile->grid, nullptr), o.clip);
-        lensprof_exposure change = frames[i].measured.exposure;
-        change.ev -= frames[i].wanted.ev;
-        for (size_t c = 0; c < 3; c++) change.white_balance[c] /= frames[i].wanted.white_balance[c];
-        const std::string name = (std::filesystem::path(o.folder) / frames[i].file).string();
-        lensprof_error error{};
-        lensprof_target pixels = frame.picture.target();
-        check(lensprof_correct(profile.get(), &change, &pixels, &error), name, &error);
         frame.picture.traits = PictureTraits();
-        write_picture(name, frame.picture);
-        events.update_items("writing", i, static_cast<uint32_t>(frames.size()));
+        const std::string file =
+            (std::filesystem::path(folder.path()) / std::filesystem::path(name).stem()).string() + ".png";
+        write_picture(file, frame.picture);
+        PictureMetadata metadata = read_metadata(file);
+        metadata.size = {info.width, info.height};
+        set_text(metadata.key.camera_maker, sizeof metadata.key.camera_maker, info.camera_maker);
+        set_text(metadata.key.camera_model, sizeof metadata.key.camera_model, info.camera_model);
+        metadata.key.processing = LENSPROF_PROCESSING_JPEG;
+        some.frames.push_back({file, metadata});
     }
-    events.clear();
+    return measure_frames(o, some, events);
 }
 
 }  // namespace
 
-int deflicker_clip(const DeflickerClip &o, Streams &streams) {
-    Progress events(streams, o.progress);
-    if (!o.chart.empty()) check_output_file(o.chart);
-    lensprof_response response;
-    lensprof_response_set_srgb(&response);
-    if (o.measure.response) response = *o.measure.response;
-    MeasuredSequence measured;
-    measure_clip(o, response, measured, events);
-    double window_s = 0.0;
-    const auto wanted = measured.curve(clip_target(o, measured), window_s);
-    std::vector<LevelledFrame> frames;
-    for (size_t i = 0; i < measured.frames.size(); i++)
-        frames.push_back({levelled_name(i), measured.frames[i], wanted[i]});
-    make_folder(o.folder);
-    write_levelled(o, response, frames, measured, events);
-    const std::string table = (std::filesystem::path(o.folder) / "exposures.csv").string();
-    OutputFiles outputs;
-    outputs.add(table, offset_table(frames));
-    const std::string title =
-        counted(frames.size(), "frame") + " of " + std::filesystem::path(o.clip).filename().string();
-    if (!o.chart.empty()) outputs.add(o.chart, exposure_chart(frames, true, title, o.chart));
-    outputs.commit();
-    const lensprof_deflicker_result &result = measured.result;
-    if (o.json)
-        print_json({{"schema", json_schema},
-                    {"frames", result.frames},
-                    {"levelled", result.levelled},
-                    {"segments", result.segments},
-                    {"flicker_ev", result.flicker},
-                    {"tone_error", result.tone_error},
-                    {"window_s", window_s},
-                    {"written", {o.folder, table}}},
-                   streams.out);
-    else
-        streams.out << counted(result.levelled, "frame") << " levelled\n"
-                    << format("flicker   %.4f EV before\n", result.flicker) << "written   " << o.folder << "\n";
-    return static_cast<int>(ExitCode::done);
+MeasuredSequence measure_clip(const std::string &clip, const MeasureOptions &options, const ClipOutput &output,
+                              FrameSequence &sequence, Events &events) {
+    auto model = std::shared_ptr<lensprof_profile>(new_profile());
+    lensprof_response_set_srgb(&model->response[0]);
+    if (options.response) model->response[0] = *options.response;
+    MeasuredSequence measured = measure_with_response(clip, options, model, output, sequence, events);
+    measured.response = options.response ? "given response" : "sRGB";
+    if (options.response || measured.result.tone_error <= fitting_tone_error) return measured;
+    try {
+        const MeasuredSequence some = measure_some(clip, options, sequence, measured, events);
+        if (some.response == measured.response) return measured;
+        MeasuredSequence better = measure_with_response(clip, options, some.model, output, sequence, events);
+        better.response = some.response;
+        if (better.result.tone_error < measured.result.tone_error) return better;
+    } catch (const Failure &failure) {
+        if (!is_of_input(failure)) throw;
+    }
+    return measured;
+}
+
+void write_levelled_clip(const std::string &clip, const std::vector<LevelledFrame> &frames,
+                         const MeasuredSequence &measured, ClipOutput &output, Events &events) {
+    VideoReader reader(clip);
+    VideoFrame frame;
+    for (uint32_t i = 0; i < frames.size() && reader.next(frame); i++) {
+        stop_if_cancelled();
+        reader.read(frame.picture);
+        lensprof_exposure change = frames[i].measured.exposure;
+        change.ev -= frames[i].wanted.ev;
+        for (size_t c = 0; c < 3; c++) change.white_balance[c] /= frames[i].wanted.white_balance[c];
+        output.write_levelled(i, frames.size(), *frame_model(measured, i), change, frame);
+        events.update_items("writing", i, static_cast<uint32_t>(frames.size()));
+    }
+    events.clear();
+    output.finish();
 }
 
 }  // namespace lensprof

@@ -1,24 +1,23 @@
-// `lensprof deflicker` of a video: levelled frames as PNG.
+// `lensprof deflicker` of a video: how its frames are measured and written.
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "cli/program/run.hpp"
+#include "cli/correct/clip_output.hpp"
+#include "photo/deflicker/corrections.hpp"
 #include "photo/deflicker/measure.hpp"
 
 namespace lensprof {
 
-struct DeflickerClip {
-    std::string clip, folder;
-    std::string to;     // smooth (also if empty), mean or first
-    std::string chart;  // file; empty: none
-    double window_s = 0.0;
-    const MeasureOptions &measure;  // response (else sRGB), region and rows
-    bool json = false, progress = false;
-};
+// Decodes the clip and measures all frames, which are named as in `output`. The response is the given one, else as of
+// measure_frames: where sRGB does not fit, a dozen frames of different exposures decide, and the clip is measured
+// again. Failure (not usable) for a moving camera and a single frame.
+MeasuredSequence measure_clip(const std::string &clip, const MeasureOptions &options, const ClipOutput &output,
+                              FrameSequence &sequence, Events &events);
 
-// Decodes the clip twice: to measure all frames, and to write them as frame_00001.png and so on, with exposures.csv.
-// One frame is held at a time.
-int deflicker_clip(const DeflickerClip &o, Streams &streams);
+// Decodes the clip again, and writes its frames levelled. One frame is held at a time.
+void write_levelled_clip(const std::string &clip, const std::vector<LevelledFrame> &frames,
+                         const MeasuredSequence &measured, ClipOutput &output, Events &events);
 
 }  // namespace lensprof

@@ -5,6 +5,7 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/clip/transforms_file.hpp"
 #include "photo/scene/exposure_times.hpp"
 
 namespace lensprof {
@@ -29,8 +30,9 @@ private:
 class FolderFrames : public FrameSource {
 public:
     FolderFrames(const std::string &folder, double frames_per_s, Events &events)
-        : files_(find_sweep(folder, events).files), frame_s_(1.0 / frames_per_s) {
-        const Picture header = read_header(files_.at(0));
+        : files_(files_in(folder, events)), frame_s_(1.0 / frames_per_s) {
+        if (files_.empty()) throw Failure(LENSPROF_ERROR_READ, folder + ": has no pictures; give a folder with frames");
+        const Picture header = read_header(files_[0]);
         const PictureMetadata metadata = read_metadata(files_[0]);
         info_.width = header.width, info_.height = header.height, info_.sample = header.sample;
         info_.orientation = metadata.orientation, info_.codec = "pictures";
@@ -63,6 +65,14 @@ public:
     }
 
 private:
+    static std::vector<std::string> files_in(const std::string &folder, Events &events) {
+        if (!has_transforms(folder)) return find_sweep(folder, events).files;
+        const TransformsFile transforms = read_transforms(folder);
+        const Picture header = read_header(transforms.files[0]);
+        check_stated_size(transforms, header.width, header.height);
+        return transforms.files;
+    }
+
     std::vector<std::string> files_;
     double frame_s_;
     size_t next_ = 0;

@@ -21,17 +21,6 @@ std::string mark_text(const LevelledFrame &frame, const MeasuredSequence &measur
     return text + ", " + measured.response;
 }
 
-// The response, with what else differs between this frame and the others.
-std::shared_ptr<const lensprof_profile> model_of(const MeasuredSequence &measured, uint32_t index) {
-    lensprof_gain_grid shading;
-    check(lensprof_deflicker_shading(measured.deflicker.get(), index, &shading, nullptr), "deflicker");
-    if (shading.columns == 0) return measured.model;
-    auto model = std::shared_ptr<lensprof_profile>(new_profile());
-    check(lensprof_profile_copy(model.get(), measured.model.get()), "deflicker");
-    model->grid = shading;
-    return model;
-}
-
 bool is_finished(const Correction &job) {
     if (!is_regular_file(job.target)) return false;
     try {
@@ -45,6 +34,16 @@ bool is_finished(const Correction &job) {
 }
 
 }  // namespace
+
+std::shared_ptr<const lensprof_profile> frame_model(const MeasuredSequence &measured, uint32_t index) {
+    lensprof_gain_grid shading;
+    check(lensprof_deflicker_shading(measured.deflicker.get(), index, &shading, nullptr), "deflicker");
+    if (shading.columns == 0) return measured.model;
+    auto model = std::shared_ptr<lensprof_profile>(new_profile());
+    check(lensprof_profile_copy(model.get(), measured.model.get()), "deflicker");
+    model->grid = shading;
+    return model;
+}
 
 std::vector<LevelledFrame> levelled_frames(const FrameSequence &sequence, const MeasuredSequence &measured,
                                            const std::vector<lensprof_exposure> &wanted) {
@@ -64,7 +63,7 @@ std::vector<Correction> levelled_copies(const std::vector<LevelledFrame> &frames
         Correction job;
         job.source = frame.file;
         job.target = (std::filesystem::path(folder) / name).string();
-        job.model = model_of(measured, i);
+        job.model = frame_model(measured, i);
         job.model_name = mark_text(frame, measured);
         job.exposure = frame.measured.exposure;
         job.target_exposure = frame.wanted;

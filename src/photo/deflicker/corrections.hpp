@@ -21,6 +21,9 @@ struct LevelledFrame {
 std::vector<LevelledFrame> levelled_frames(const FrameSequence &sequence, const MeasuredSequence &measured,
                                            const std::vector<lensprof_exposure> &wanted);
 
+// The response, with what else differs between this frame and the others.
+std::shared_ptr<const lensprof_profile> frame_model(const MeasuredSequence &measured, uint32_t index);
+
 // The copies in `folder`, under the names of the frames. Frames that are not levelled are copied without a change.
 std::vector<Correction> levelled_copies(const std::vector<LevelledFrame> &frames, const MeasuredSequence &measured,
                                         const std::string &folder);

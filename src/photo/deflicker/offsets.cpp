@@ -193,7 +193,9 @@ std::vector<double> read_curve(const std::string &path, const FrameSequence &seq
     std::vector<double> curve;
     for (const Frame &frame : sequence.frames) {
         const std::string name = std::filesystem::path(frame.file).filename().string();
-        const auto found = by_name.find(name);
+        auto found = by_name.find(name);
+        for (const char *suffix : {"", ".png", ".jpg"})  // frames of a clip, as pictures or not
+            if (found == by_name.end()) found = by_name.find(std::filesystem::path(name).stem().string() + suffix);
         if (found == by_name.end()) fail("has no line for " + name + "; give one for every frame");
         curve.push_back(found->second);
     }

@@ -6,41 +6,16 @@
 #include <new>
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/display.h>
-#include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 }
 
 #include "photo/base/failure.hpp"
 #include "photo/base/file_kind.hpp"
 #include "photo/base/format.hpp"
+#include "photo/video/libav.hpp"
 
 namespace lensprof {
 namespace {
-
-struct FormatClose {
-    void operator()(AVFormatContext *context) const { avformat_close_input(&context); }
-};
-struct CodecFree {
-    void operator()(AVCodecContext *context) const { avcodec_free_context(&context); }
-};
-struct FrameFree {
-    void operator()(AVFrame *frame) const { av_frame_free(&frame); }
-};
-struct PacketFree {
-    void operator()(AVPacket *packet) const { av_packet_free(&packet); }
-};
-struct ScalerFree {
-    void operator()(SwsContext *context) const { sws_freeContext(context); }
-};
-
-std::string text_of_error(int code) {
-    char text[AV_ERROR_MAX_STRING_SIZE] = {};
-    av_strerror(code, text, sizeof text);
-    return text;
-}
 
 // The display matrix of a stream, 9 numbers; NULL: none.
 const int32_t *display_matrix_of(const AVStream &stream) {
@@ -77,25 +52,12 @@ const char *refused_transfer(AVColorTransferCharacteristic transfer) {
     }
 }
 
-// The numbers of a matrix in libswscale.
-int matrix_of(const AVFrame &frame) {
-    switch (frame.colorspace) {
-    case AVCOL_SPC_BT709: return SWS_CS_ITU709;
-    case AVCOL_SPC_FCC: return SWS_CS_FCC;
-    case AVCOL_SPC_SMPTE170M:
-    case AVCOL_SPC_BT470BG: return SWS_CS_ITU601;
-    case AVCOL_SPC_SMPTE240M: return SWS_CS_SMPTE240M;
-    case AVCOL_SPC_BT2020_NCL: return SWS_CS_BT2020;
-    default: return frame.width > 1024 || frame.height > 576 ? SWS_CS_ITU709 : SWS_CS_ITU601;
-    }
-}
-
-// The formats of JPEG are full range by their name.
-bool is_full_range(const AVFrame &frame) {
-    if (frame.color_range != AVCOL_RANGE_UNSPECIFIED) return frame.color_range == AVCOL_RANGE_JPEG;
-    const char *name = av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format));
-    const auto *format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
-    return (name && std::string(name).rfind("yuvj", 0) == 0) || (format && (format->flags & AV_PIX_FMT_FLAG_RGB));
+int64_t duration_of(const AVFrame &frame) {
+#if LIBAVUTIL_VERSION_INT >= AV_VERSION_INT(57, 30, 100)
+    return frame.duration;
+#else
+    return frame.pkt_duration;
+#endif
 }
 
 std::string tag_of(const AVFormatContext &file, const AVStream &stream, std::initializer_list<const char *> names) {
@@ -135,11 +97,11 @@ private:
     void send();
 
     std::string path_;
-    std::unique_ptr<AVFormatContext, FormatClose> file_;
-    std::unique_ptr<AVCodecContext, CodecFree> codec_;
-    std::unique_ptr<AVFrame, FrameFree> frame_{av_frame_alloc()};
-    std::unique_ptr<AVPacket, PacketFree> packet_{av_packet_alloc()};
-    std::unique_ptr<SwsContext, ScalerFree> scaler_;
+    Libav<AVFormatContext> file_;
+    Libav<AVCodecContext> codec_;
+    Libav<AVFrame> frame_{av_frame_alloc()};
+    Libav<AVPacket> packet_{av_packet_alloc()};
+    Libav<SwsContext> scaler_;
     std::array<int, 3> scaler_for_{-1, -1, -1};  // pixel format, matrix, range
     int stream_ = -1;
     bool is_held_ = false, is_at_end_ = false;  // frame_ holds the next frame; all packets were sent
@@ -265,12 +227,13 @@ void VideoReader::Decoder::refuse_transfer(const AVFrame &frame) const {
 
 void VideoReader::Decoder::convert(Picture &picture) {
     const auto stored = static_cast<AVPixelFormat>(frame_->format);
-    const std::array<int, 3> wanted{frame_->format, matrix_of(*frame_), is_full_range(*frame_)};
+    const std::array<int, 3> wanted{frame_->format, matrix_of(frame_->colorspace, frame_->width, frame_->height),
+                                    is_full_range(frame_->color_range, stored)};
     const bool is_deep = info.sample == LENSPROF_SAMPLE_U16;
     if (wanted != scaler_for_) {
-        constexpr int flags = SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
         scaler_.reset(sws_getContext(frame_->width, frame_->height, stored, frame_->width, frame_->height,
-                                     is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24, flags, nullptr, nullptr, nullptr));
+                                     is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24, scaler_flags, nullptr, nullptr,
+                                     nullptr));
         if (!scaler_)
             fail(std::string(av_get_pix_fmt_name(stored))
                  + " pixels cannot be converted to RGB; convert the video to yuv420p first");
@@ -302,6 +265,8 @@ bool VideoReader::Decoder::next(VideoFrame &frame) {
                  : seconds_ + frame_s_;
     if (read_) seconds_ = stated_s > seconds_ ? stated_s : seconds_ + frame_s_;
     frame.seconds = seconds_, frame.number = read_++;
+    frame.duration_s = double(duration_of(*frame_)) * av_q2d(file_->streams[stream_]->time_base);
+    frame.time_stamp = has_time ? std::optional<int64_t>(frame_->best_effort_timestamp) : std::nullopt;
     is_held_ = false;
     return true;
 }

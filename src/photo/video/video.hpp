@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "photo/pictures/picture.hpp"
@@ -24,8 +25,10 @@ struct VideoInfo {
 // A frame: full-range RGB, as stored (the rotation is kept but not applied); three equal channels if the video is grey.
 // 8 bits, or 16 of full scale for sources of more than 8.
 struct VideoFrame {
-    double seconds = 0.0;  // presentation time since the first frame
-    uint64_t number = 0;   // 0 for the first
+    double seconds = 0.0;               // presentation time since the first frame
+    uint64_t number = 0;                // 0 for the first
+    double duration_s = 0.0;            // 0: not stated
+    std::optional<int64_t> time_stamp;  // as the stream states it, in its time base
     Picture picture;
 };
 

@@ -1,13 +1,14 @@
-// Built instead of video.cpp and tracker.cpp without libav and OpenCV.
+// Built instead of video.cpp, video_writer.cpp and tracker.cpp without libav and OpenCV.
 #include "photo/base/failure.hpp"
 #include "photo/video/tracker.hpp"
-#include "photo/video/video.hpp"
+#include "photo/video/video_writer.hpp"
 
 namespace lensprof {
 
 struct VideoReader::Decoder {
     VideoInfo info;
 };
+struct VideoWriter::Encoder {};
 struct CornerTracker::State {};
 
 bool can_read_video() { return false; }
@@ -21,6 +22,16 @@ VideoReader::~VideoReader() = default;
 const VideoInfo &VideoReader::info() const { return decoder_->info; }
 bool VideoReader::next(VideoFrame &) { return false; }
 void VideoReader::read(Picture &) {}
+
+bool is_video_codec(const std::string &) { return false; }
+
+VideoWriter::VideoWriter(const std::string &, const std::string &path, const VideoCodec &, Events &) {
+    throw Failure(LENSPROF_ERROR_WRITE, path + ": videos are written with libav, without which this program was built; "
+                                               "give the name of a folder");
+}
+VideoWriter::~VideoWriter() = default;
+void VideoWriter::write(const VideoFrame &, size_t) {}
+VideoLoss VideoWriter::finish() { return {}; }
 
 CornerTracker::CornerTracker() = default;
 CornerTracker::~CornerTracker() = default;

@@ -1,0 +1,132 @@
+#include "cli/calibrate/levelled_clip.hpp"
+
+#include <filesystem>
+
+#include "cli/calibrate/clip_files.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/clip/transforms_file.hpp"
+
+namespace lensprof {
+namespace {
+
+// The exposure that levelled frames have, per segment: its mean, that of its first frame that is measured, or that of a
+// frame, for its segment alone.
+std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip) {
+    std::vector<lensprof_exposure> wanted;
+    const size_t named = to == "mean" || to == "first" || to.empty() ? 0 : frame_number(to);
+    for (const ClipFrame &frame : clip.frames) {
+        if (frame.state != ClipState::measured || frame.segment < wanted.size()) continue;
+        lensprof_exposure mean;
+        lensprof_exposure_init(&mean);
+        wanted.resize(frame.segment + 1, mean);
+        if (to == "first") wanted.back() = frame.exposure;
+    }
+    if (named == 0) return wanted;
+    if (named > clip.frames.size())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + to + ": " + clip.path + " has "
+                                                   + counted(clip.frames.size(), "frame") + "; name one of them");
+    const ClipFrame &frame = clip.frames[named - 1];
+    if (frame.state != ClipState::measured)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--to " + to + ": this frame is " + clip_state_name(frame.state) + "; name another one");
+    wanted[frame.segment] = frame.exposure;
+    return wanted;
+}
+
+// Decodes the clip again and writes its frames at the wanted exposure of their segment without falloff. Frames that are
+// not measured are left out of a folder, and unchanged in a video. Returns their numbers, from 0.
+std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks &clip,
+                                            const std::vector<lensprof_exposure> &wanted, double frames_per_s,
+                                            ClipOutput &output, Events &events) {
+    const auto profile = fit.profile();
+    const auto source = open_frames(clip.path, frames_per_s, events);
+    const size_t count = clip.frames.size();
+    std::vector<uint32_t> unmeasured;
+    size_t done = 0;
+    for (VideoFrame frame; done < count && source->next(frame);) {
+        const ClipFrame &measured = clip.frames[done];
+        if (frame.number != measured.number) continue;
+        stop_if_cancelled();
+        const size_t index = done++;
+        const bool is_measured = measured.state == ClipState::measured;
+        if (!is_measured) unmeasured.push_back(static_cast<uint32_t>(index));
+        if (!is_measured && !output.is_video()) continue;
+        source->read(frame.picture);
+        if (is_measured) {
+            lensprof_exposure change = measured.exposure;
+            change.ev -= wanted[measured.segment].ev;
+            for (size_t c = 0; c < 3; c++) change.white_balance[c] /= wanted[measured.segment].white_balance[c];
+            output.write_levelled(index, count, *profile, change, frame);
+        } else {
+            output.write_unchanged(index, count, frame);
+        }
+        events.update_items("frames", static_cast<uint32_t>(done), static_cast<uint32_t>(count));
+    }
+    output.finish();
+    events.clear();
+    return unmeasured;
+}
+
+// The poses of the input for the levelled frames.
+void write_transforms(const ClipCommand &o, const ClipTracks &clip, const std::vector<lensprof_exposure> &wanted,
+                      const ClipOutput &output) {
+    std::vector<LevelledPose> poses;
+    for (size_t i = 0; i < clip.frames.size(); i++) {
+        const ClipFrame &frame = clip.frames[i];
+        if (frame.state == ClipState::measured)
+            poses.push_back({"images/" + output.name_of(i), frame.exposure.ev - wanted[frame.segment].ev});
+        else
+            poses.emplace_back();
+    }
+    const std::string path = (std::filesystem::path(o.levelled) / transforms_name).string(),
+                      text = levelled_transforms(read_transforms(o.input), o.levelled, poses);
+    write_file(path, text.data(), text.size());
+}
+
+}  // namespace
+
+std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) {
+    if (o.levelled.empty()) {
+        if (!o.to.empty() || !o.codec.name.empty())
+            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(o.to.empty() ? "--codec" : "--to")
+                                                       + ": is for levelled frames; give --frames, too");
+        return nullptr;
+    }
+    if (!o.to.empty() && o.to != "mean" && o.to != "first" && frame_number(o.to) == 0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": is neither mean, first nor the number of a frame");
+    if (is_same_file(o.input, o.levelled))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": is the input; give the output another name");
+    if (has_transforms(o.input) && has_transforms(o.levelled) && !o.overwrite)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": has a " + transforms_name
+                                                   + "; give another name, or replace it with --overwrite");
+    // The frames of a transforms.json are in images/, as nerfstudio keeps them.
+    const std::string place = has_transforms(o.input) && !is_video_name(o.levelled)
+                                  ? (std::filesystem::path(o.levelled) / "images").string()
+                                  : o.levelled;
+    if (is_in_new_folder(o.levelled, o.output)) make_folder(o.output);
+    auto levelled = std::make_unique<ClipOutput>(o.input, place, o.codec, o.overwrite, events);
+    if (levelled->is_video() && o.frames_per_s > 0.0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.levelled + ": a video has all frames of its source; omit --fps, or give the name of a folder");
+    return levelled;
+}
+
+void check_wanted(const ClipCommand &o, const ClipTracks &clip) { wanted_exposures(o.to, clip); }
+
+void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
+                    Events &events) {
+    const auto wanted = wanted_exposures(o.to, clip);
+    const auto unmeasured = write_levelled_frames(fit, clip, wanted, rate, output, events);
+    if (has_transforms(o.input)) write_transforms(o, clip, wanted, output);
+    if (wanted.size() > 1 && frame_number(o.to) > 0)
+        events.note(o.levelled, "scenes without the frame " + o.to + " have their mean exposure");
+    if (unmeasured.empty()) return;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < clip.frames.size(); i++) names.push_back(output.name_of(i));
+    events.note(o.levelled, std::string(output.is_video() ? "not levelled" : "left out")
+                                + ", because the exposure is not measured: " + listed(unmeasured, names));
+}
+
+}  // namespace lensprof

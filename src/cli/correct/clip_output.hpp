@@ -1,0 +1,51 @@
+// Where levelled frames of a clip go: pictures in a folder, or a video.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/program/options.hpp"
+#include "photo/report/report.hpp"
+#include "photo/video/video_writer.hpp"
+
+namespace lensprof {
+
+// png or jpeg of a folder, else that of a video; empty: png, or by the name of the video.
+using ClipCodec = VideoCodec;
+
+// Declares --codec, for experts.
+void declare_codec(Command &command, ClipCodec &codec);
+
+// The number of a frame that is named "12", "frame_00012" or "frame_00012.png", from 1; 0: none.
+size_t frame_number(const std::string &word);
+
+class ClipOutput {
+public:
+    // Failure before anything is measured: of VideoWriter, and (usage) for an output that is the source, or a video
+    // that exists without `overwrite`; (failed) for a folder that cannot be written.
+    ClipOutput(const std::string &source, const std::string &path, const ClipCodec &codec, bool overwrite,
+               Events &events);
+
+    bool is_video() const { return writer_ != nullptr; }
+    std::string name_of(size_t index) const;  // "frame_00001.png"; of a video without the suffix
+
+    // Levels the frame in place and writes it; `exposure`: that which is removed.
+    void write_levelled(size_t index, size_t count, const lensprof_profile &model, const lensprof_exposure &exposure,
+                        VideoFrame &frame);
+    void write_unchanged(size_t index, size_t count, VideoFrame &frame);
+    void finish();
+
+    Json json() const;         // codec and loss of a video; null for a folder
+    std::string text() const;  // the same for people
+    const std::string &path() const { return path_; }
+
+private:
+    std::string path_, suffix_;
+    int quality_;
+    std::unique_ptr<VideoWriter> writer_;
+    std::optional<VideoLoss> loss_;
+};
+
+}  // namespace lensprof

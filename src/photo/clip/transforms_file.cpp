@@ -1,0 +1,110 @@
+#include "photo/clip/transforms_file.hpp"
+
+#include <filesystem>
+#include <map>
+
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::string transforms_path(const std::string &folder) { return (fs::path(folder) / transforms_name).string(); }
+
+[[noreturn]] void fail_transforms(const std::string &folder, const std::string &what) {
+    throw Failure(LENSPROF_ERROR_READ, transforms_path(folder) + ": " + what);
+}
+
+std::string picture_named(const std::string &folder, const std::string &name, size_t index) {
+    const std::string path = (fs::path(folder) / name).lexically_normal().string();
+    if (is_regular_file(path)) return path;
+    for (const char *extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG"})
+        if (is_regular_file(path + extension)) return path + extension;
+    fail_transforms(folder,
+                    format("frames[%zu]: ", index) + path + " does not exist; copy it there, or remove the frame");
+}
+
+// A name relative to one folder as one relative to another.
+void move_name(OrderedJson &object, const char *key, const std::string &from, const std::string &to) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_string()) return;
+    const fs::path name(found->get<std::string>());
+    if (name.is_absolute()) return;
+    const fs::path whole(canonical_path((fs::path(from) / name).string()));
+    *found = whole.lexically_proximate(canonical_path(to)).generic_string();
+}
+
+}  // namespace
+
+bool has_transforms(const std::string &folder) { return is_regular_file(transforms_path(folder)); }
+
+TransformsFile read_transforms(const std::string &folder) {
+    TransformsFile transforms{folder, {}, {}};
+    try {
+        transforms.content = OrderedJson::parse(read_text(transforms_path(folder), max_text_bytes));
+    } catch (const OrderedJson::exception &error) {
+        fail_transforms(folder, std::string("is not JSON: ") + error.what() + "; repair it");
+    }
+    const OrderedJson &content = transforms.content;
+    if (!content.is_object() || !content.contains("frames") || !content["frames"].is_array())
+        fail_transforms(folder,
+                        "has no list of frames, as nerfstudio and instant-ngp write it; give their file, or move "
+                        "it away to read the pictures of the folder");
+    for (const OrderedJson &frame : content["frames"]) {
+        const size_t index = transforms.files.size();
+        if (!frame.is_object() || !frame.contains("file_path") || !frame["file_path"].is_string())
+            fail_transforms(folder, format("frames[%zu] has no file_path; add the name of its picture", index));
+        transforms.files.push_back(picture_named(folder, frame["file_path"].get<std::string>(), index));
+    }
+    if (transforms.files.empty()) fail_transforms(folder, "lists no frames; give a file with frames");
+    return transforms;
+}
+
+void check_stated_size(const TransformsFile &transforms, uint32_t width, uint32_t height) {
+    const OrderedJson &content = transforms.content;
+    const auto differs = [&](const char *key, uint32_t size) {
+        return content.contains(key) && content[key].is_number() && content[key].get<double>() != double(size);
+    };
+    if (differs("w", width) || differs("h", height))
+        fail_transforms(transforms.folder, "states w = " + content.value("w", OrderedJson()).dump()
+                                               + ", h = " + content.value("h", OrderedJson()).dump() + ", but "
+                                               + transforms.files[0]
+                                               + format(" has %u x %u pixels; correct them", width, height));
+}
+
+std::string levelled_transforms(const TransformsFile &transforms, const std::string &folder,
+                                const std::vector<LevelledPose> &frames) {
+    OrderedJson content = transforms.content, kept = OrderedJson::array();
+    std::map<std::string, std::string> new_names;
+    for (size_t i = 0; i < frames.size(); i++) {
+        OrderedJson frame = content["frames"][i];
+        new_names[frame["file_path"].get<std::string>()] = frames[i].file;
+        if (frames[i].file.empty()) continue;
+        frame["file_path"] = frames[i].file;
+        frame["exposure_ev"] = frames[i].removed_ev;
+        for (const char *key : {"mask_path", "depth_file_path"}) move_name(frame, key, transforms.folder, folder);
+        kept.push_back(std::move(frame));
+    }
+    content["frames"] = std::move(kept);
+    move_name(content, "ply_file_path", transforms.folder, folder);
+    for (const char *key : {"train_filenames", "val_filenames", "test_filenames"}) {
+        if (!content.contains(key) || !content[key].is_array()) continue;
+        OrderedJson names = OrderedJson::array();
+        for (const OrderedJson &name : content[key]) {
+            const auto found = name.is_string() ? new_names.find(name.get<std::string>()) : new_names.end();
+            if (found == new_names.end())
+                names.push_back(name);
+            else if (!found->second.empty())
+                names.push_back(found->second);
+        }
+        content[key] = std::move(names);
+    }
+    return content.dump(2) + "\n";
+}
+
+}  // namespace lensprof

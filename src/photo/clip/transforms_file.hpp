@@ -1,0 +1,40 @@
+// transforms.json: frames with the poses of their camera, as nerfstudio and instant-ngp read them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace lensprof {
+
+constexpr char transforms_name[] = "transforms.json";
+
+struct TransformsFile {
+    std::string folder;  // its own
+    nlohmann::ordered_json content;
+    std::vector<std::string> files;  // of the frames, as listed
+};
+
+// What becomes of a frame.
+struct LevelledPose {
+    std::string file;  // relative to the folder of the new file; empty: left out
+    double removed_ev = 0.0;
+};
+
+// Whether the folder holds the file.
+bool has_transforms(const std::string &folder);
+
+// Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Failure (unreadable) with
+// the file and the frame, for content that is not such a file and for pictures that do not exist.
+TransformsFile read_transforms(const std::string &folder);
+
+// Failure (unreadable) if the file states another size than that of the frames.
+void check_stated_size(const TransformsFile &transforms, uint32_t width, uint32_t height);
+
+// The text of a file in `folder` with the levelled frames, which get the key exposure_ev: what was removed. Names of
+// masks, depths and points are those of the same files from there; everything else is unchanged.
+std::string levelled_transforms(const TransformsFile &transforms, const std::string &folder,
+                                const std::vector<LevelledPose> &frames);
+
+}  // namespace lensprof
