@@ -115,8 +115,8 @@ void report_times(const ClipTracks &clip, double error_ev, Streams &streams) {
                                    error_ev));
 }
 
-Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally,
-               const std::vector<std::string> &written, const ClipOutput *levelled) {
+Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, const std::vector<std::string> &written,
+               const ClipOutput *levelled) {
     Json frames = Json::array();
     for (const ClipFrame &frame : clip.frames)
         frames.push_back({{"seconds", frame.seconds},

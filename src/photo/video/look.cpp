@@ -8,10 +8,10 @@
 namespace lensprof {
 namespace {
 
-constexpr float noise_levels = 2.0f;            // of a reduced and smoothed pixel, with what compression changes
-constexpr float unlike_share = 0.1f;            // of the variance that may differ otherwise
-constexpr float shape_sigma = 0.02f;            // change of the shape since the frame before
-constexpr float tilt_sigma = 0.8f;              // levels per px
+constexpr float noise_levels = 2.0f;  // of a reduced and smoothed pixel, with what compression changes
+constexpr float unlike_share = 0.1f;  // of the variance that may differ otherwise
+constexpr float shape_sigma = 0.02f;  // change of the shape since the frame before
+constexpr float tilt_sigma = 0.8f;    // levels per px
 constexpr float gain_sigma = 0.5f;
 constexpr double most_px = 2.0, least_area = 0.4, most_area = 2.5;
 constexpr int most_rounds = 8;

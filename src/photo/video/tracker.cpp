@@ -13,9 +13,9 @@
 namespace lensprof {
 namespace {
 
-constexpr int reduced_side = 640;        // px, the longer side of the frames that are tracked
-constexpr int most_corners = 360;        // per frame
-constexpr double least_share = 0.8;      // of most_corners, below which new ones are added
+constexpr int reduced_side = 640;    // px, the longer side of the frames that are tracked
+constexpr int most_corners = 360;    // per frame
+constexpr double least_share = 0.8;  // of most_corners, below which new ones are added
 constexpr double corner_quality = 0.004, largest_return_px = 0.6;
 constexpr int window_px = 15, levels = 4, border_px = Look::reach + 3;
 constexpr double least_kept = 0.15;  // of the corners, else the frame is a cut
@@ -163,8 +163,7 @@ void CornerTracker::State::find_new(const cv::Mat &grey) {
     cv::goodFeaturesToTrack(grey, found, most_corners - int(corners.size()), corner_quality, distance, mask, 5);
     const cv::Mat unevenness = unevenness_of(grey);
     for (const cv::Point2f &place : found)
-        corners.push_back(
-            {next_track++, place, even_offset(unevenness, place), Look(smooth, place), Warp(place)});
+        corners.push_back({next_track++, place, even_offset(unevenness, place), Look(smooth, place), Warp(place)});
 }
 
 TrackedFrame CornerTracker::add(const Picture &frame) {
