@@ -94,7 +94,8 @@ void report_frames(const ClipFit &fit, const ClipTracks &clip, const Tally &tall
         note(streams, clip.path + ": is shown rotated; the vignette and frames are as stored");
     if (tally.segments > 1)
         note(streams, clip.path + ": new scenes begin at frames " + breaks_of(clip)
-                          + "; exposures are relative to the mean of each scene");
+                          + (std::isfinite(fit.known_error_ev) ? "; the given times connect them"
+                                                               : "; exposures are relative to the mean of each scene"));
     if (tally.blank)
         note(streams, clip.path + ": " + counted(tally.blank, "frame") + " black or white, without exposure");
     if (tally.unlinked)

@@ -85,15 +85,19 @@ void find_differences(const ClipTracks &clip, const std::vector<std::vector<Ligh
 
 // Ratios over 1, 2, 4, ... frames. What biases a ratio of neighbours, such as an encoder that follows changes late,
 // biases the next ones alike: ratios over longer distances count more.
-std::vector<ChainRatio> ratios_of(const ClipTracks &clip, const std::vector<std::vector<Light>> &lights) {
+std::vector<ChainRatio> ratios_of(const ClipTracks &clip, const ClipModel &model) {
     std::vector<ChainRatio> ratios;
+    std::vector<std::vector<Light>> lights(clip.frames.size());  // of the frames that later ones are compared with
     Differences differences[3];
-    for (uint32_t i = 1; i < clip.frames.size(); i++)
+    for (uint32_t i = 0; i < clip.frames.size(); i++) {
+        lights[i] = lights_of(clip.frames[i], model, clip.info);
         for (uint32_t lag = 1; lag <= std::min(longest_lag, i); lag *= 2) {
             find_differences(clip, lights, i - lag, i, differences);
             ChainRatio ratio{i - lag, i, {}, 0.0, static_cast<double>(lag) / longest_lag};
             if (find_ratio(differences, ratio)) ratios.push_back(ratio);
         }
+        if (i >= longest_lag) std::vector<Light>().swap(lights[i - longest_lag]);
+    }
     return ratios;
 }
 
@@ -173,9 +177,7 @@ double error_of_known(const std::vector<double> &known_ev, const ClipTracks &cli
 }  // namespace
 
 double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip) {
-    std::vector<std::vector<Light>> lights;
-    for (const ClipFrame &frame : clip.frames) lights.push_back(lights_of(frame, model, clip.info));
-    const std::vector<ChainRatio> ratios = ratios_of(clip, lights);
+    const std::vector<ChainRatio> ratios = ratios_of(clip, model);
     std::vector<uint32_t> group_of = find_segments(ratios, clip);
     std::vector<uint8_t> is_anchor(clip.frames.size());
     for (uint32_t i = 0; i < is_anchor.size(); i++) is_anchor[i] = group_of[i] == i;

@@ -68,13 +68,18 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
     double next_s = 0.0;
     for (VideoFrame frame; source.next(frame);) {
         clip.frames_in_clip++;
+        stop_if_cancelled();
+        source.read(frame.picture);
+        const TrackedFrame tracked = tracker.add(frame.picture);
+        clip.travel = std::max(clip.travel, tracked.travel);
+        const auto total = clip.info.frames;
+        events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
+                      counted(clip.frames_in_clip, "frame"));
+        if (clip.frames_in_clip == most_static_frames && clip.is_static()) break;
         if (taken_per_s > 0.0) {
             if (frame.seconds < next_s - 0.5 / std::max(taken_per_s, clip.info.frames_per_s)) continue;
             next_s = (std::floor(frame.seconds * taken_per_s + 0.5) + 1.0) / taken_per_s;
         }
-        stop_if_cancelled();
-        source.read(frame.picture);
-        const TrackedFrame tracked = tracker.add(frame.picture);
         ClipFrame found;
         found.number = frame.number, found.seconds = frame.seconds;
         found.mean_level = tracked.mean_level, found.motion = tracked.motion, found.repeats = tracked.repeats;
@@ -84,12 +89,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
             found.observations.push_back({place.track, place.x, place.y, value});
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }
-        clip.travel = std::max(clip.travel, tracked.travel);
         clip.frames.push_back(std::move(found));
-        const auto total = clip.info.frames;
-        events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
-                      counted(clip.frames_in_clip, "frame"));
-        if (clip.frames.size() == most_static_frames && clip.is_static()) break;
     }
     events.clear();
     clip.channels = is_grey ? 1 : 3;

@@ -48,8 +48,9 @@ struct ClipTracks {
     bool is_static() const { return travel < 0.01; }
 };
 
-// Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). `taken_per_s`
-// frames per second are taken, 0 = all. Ends early (`is_static`) where nothing moved in the first 300.
+// Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). Follows scene
+// points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. Ends early (`is_static`)
+// where nothing moved in the first 200.
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
 
 // The observations of the same tracks in two frames: call(a, b).
