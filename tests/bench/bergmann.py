@@ -16,15 +16,15 @@ import clips
 import tools
 
 POINTS, CELLS = 200, 10  # tracks; cells of the grid in each direction
-TRACKER, LEVELS, TURNS = 3, 4, 10  # half width of the tracker's patch, levels of the pyramid, iterations in each
+TRACKER, LEVELS, TURNS = 3, 4, 6  # half width of the tracker's patch, levels of the pyramid, iterations in each
 RETURN_PX, CONVERGED_PX = 1.2, 0.02
-PATCH = 1  # half width of the patch of radiances
+PATCH = 3  # half width of the patch of radiances
 WINDOW = 10  # M
-SPACING, KEYFRAMES, SEEN = 5, 135, 3  # frames between keyframes, their largest number; least keyframes of a track
-MU, HUBER = 400.0, 4.0  # levels^2 per pixel^2, levels
+SPACING, SEEN = 15, 3  # frames between keyframes, least keyframes of a track
+MU, HUBER = 25.0, 4.0  # levels^2 per pixel^2, levels
 BLACK, WHITE = 4.0, 250.0  # grey values outside determine nothing
 MODES, TERMS = 4, 3
-ROUNDS, SETTLED, LEAST = 400, 1e-5, 1e-4  # turns, relative decrease of the energy in the last, smallest radiance
+ROUNDS, SETTLED, LEAST = 300, 1e-5, 1e-4  # turns, relative decrease of the energy in the last, smallest radiance
 
 
 def frames_of(path, width=clips.WIDTH, height=clips.HEIGHT):
@@ -84,7 +84,7 @@ def follow(first, second, xy):
             gain = (beta.sum() - (w * solved[..., 1]).sum()) / max(beta.size - (w * solved[..., 0]).sum(), 1e-9)
             step = np.clip(gain * solved[..., 0] - solved[..., 1], -2, 2)
             at += step / scale
-            if np.median(np.abs(step)) < CONVERGED_PX / 4:
+            if np.median(np.abs(step)) < CONVERGED_PX:
                 break
     return at
 
@@ -157,24 +157,25 @@ def track(frames):
 # --- response and falloff
 
 
-def basis(x):
-    """Mean curve and modes at x, [1 + MODES, ...], and their slopes."""
-    table = tools.emor_table()[:1 + MODES]
-    at = np.clip(x, 0.0, 1.0) * (table.shape[1] - 1)
-    low = np.minimum(at.astype(int), table.shape[1] - 2)
-    left, right = table[:, low], table[:, low + 1]
-    return left + (right - left) * (at - low), (right - left) * (table.shape[1] - 1)
+def sampled(tables, x):
+    """Tables over 0..1 at x, [..., n], linear in between, and their slopes."""
+    at = np.clip(x, 0.0, 1.0) * (tables.shape[-1] - 1)
+    low = np.minimum(at.astype(np.int32), tables.shape[-1] - 2)
+    left = np.take(tables, low, -1)
+    rise = np.take(np.diff(tables), low, -1)
+    return left + rise * (at - low), rise * (tables.shape[-1] - 1)
 
 
-def curve(c):
-    return np.maximum.accumulate(np.tensordot(np.concatenate([[1.0], c]), tools.emor_table()[:1 + MODES], 1))
+def response(c):
+    """f of 4 modes, levels; it need not rise everywhere."""
+    return 255 * np.tensordot(np.concatenate([[1.0], c]), tools.emor_table()[:1 + MODES], 1)
 
 
 def inverse(c, grey):
     """f^-1 of grey values."""
-    f = curve(c)
+    f = np.maximum.accumulate(response(c))
     rises = np.concatenate([[True], np.diff(f) > 0])
-    return np.interp(np.asarray(grey) / 255.0, f[rises], np.linspace(0, 1, len(f))[rises])
+    return np.interp(grey, f[rises], np.linspace(0, 1, len(f))[rises])
 
 
 def attenuation(a, r2):
@@ -211,25 +212,22 @@ class Fit:
     def of_points(self, values):
         return np.bincount(self.point, values, self.points)
 
-    def energies(self, c, a, e, light):
-        x = e[self.frame] * attenuation(a, self.r2) * light[self.point]
-        values, _ = basis(x)
-        return self.weight * huber(255 * (values[0] + c @ values[1:]) - self.grey)[0]
+    def residuals(self, c, a, e, light):
+        """Residuals, levels; and their derivatives by f's argument, and the argument's factors e and V."""
+        by_frame, v = e[self.frame], attenuation(a, self.r2)
+        x = by_frame * v * light[self.point]
+        value, slope = sampled(response(c), x)
+        return value - self.grey, np.where(x < 1, slope, 0.0), by_frame, v
 
-    def parts(self, c, a, e, light):
-        """Residuals, their weights, and the derivatives by c, a, e and L, levels."""
-        v, of_frame, of_point = attenuation(a, self.r2), e[self.frame], light[self.point]
-        x = of_frame * v * of_point
-        values, slopes = basis(x)
-        slope = 255 * np.where(x < 1, slopes[0] + c @ slopes[1:], 0.0)
-        residual = 255 * (values[0] + c @ values[1:]) - self.grey
-        return (residual, self.weight * huber(residual)[1],
-                np.concatenate([255 * values[1:], slope * of_frame * of_point * self.powers]), slope * v * of_point,
-                slope * of_frame * v)
+    def energies(self, *state):
+        return self.weight * huber(self.residuals(*state)[0])[0]
 
     def camera(self, c, a, e, light, damping, energy):
         """A Levenberg-Marquardt step of (f, V, e) -> (c, a, e, damping, energy)."""
-        residual, weight, shared, by_e, _ = self.parts(c, a, e, light)
+        residual, slope, by_frame, v = self.residuals(c, a, e, light)
+        weight, of_point = self.weight * huber(residual)[1], light[self.point]
+        modes, _ = sampled(tools.emor_table()[1:1 + MODES], by_frame * v * of_point)
+        shared, by_e = np.concatenate([255 * modes, slope * by_frame * of_point * self.powers]), slope * v * of_point
         n = MODES + TERMS
         normal, right = np.zeros((n + self.count,) * 2), np.zeros(n + self.count)
         weighted = shared * weight
@@ -250,17 +248,16 @@ class Fit:
 
     def light(self, c, a, e, light):
         """A Gauss-Newton step of every radiance where it lowers its energy -> (radiances, energy)."""
-        residual, weight, _, _, by_light = self.parts(c, a, e, light)
-        before = self.of_points(self.energies(c, a, e, light))
+        residual, slope, by_frame, v = self.residuals(c, a, e, light)
+        value, weight = huber(residual)
+        weight, by_light, before = self.weight * weight, slope * by_frame * v, self.of_points(self.weight * value)
         step = -self.of_points(weight * by_light * residual) / np.maximum(self.of_points(weight * by_light ** 2), 1e-9)
-        for _ in range(4):
+        for _ in range(2):
             tried = np.clip(light + step, LEAST, 1.0 / max(e.min(), 1e-3))
             after = self.of_points(self.energies(c, a, e, tried))
-            worse = after > before
-            light, before = np.where(worse, light, tried), np.minimum(before, after)
-            if not worse.any():
-                break
-            step = np.where(worse, step / 4, 0.0)
+            better = after < before
+            light, before = np.where(better, tried, light), np.minimum(before, after)
+            step = np.where(better, 0.0, step / 4)
         return light, before.sum()
 
     def run(self, c, a, e):
@@ -300,15 +297,14 @@ def fast_exposures(tracks, c, a):
 def fit(tracks):
     """-> response c, falloff a, log2 exposures of all frames by the backend and by the fast estimate."""
     count = int(tracks.frame.max()) + 1
-    spacing = max(SPACING, -(-count // KEYFRAMES))
     c, a = np.zeros(MODES), np.zeros(TERMS)
     e = fast_exposures(tracks, c, a)
-    rows = tracks.frame % spacing == 0
+    rows = tracks.frame % SPACING == 0
     rows &= np.bincount(tracks.track[rows], minlength=tracks.track.max() + 1)[tracks.track] >= SEEN
     keyframes = tracks.select(rows)
-    keyframes.frame = keyframes.frame // spacing
-    problem = Fit(keyframes, (count - 1) // spacing + 1)
-    start = e[::spacing] / np.median(e)
+    keyframes.frame = keyframes.frame // SPACING
+    problem = Fit(keyframes, (count - 1) // SPACING + 1)
+    start = e[::SPACING] / np.median(e)
     start = start * min(1.0, 0.9 / np.max(start))
     c, a, e, light, _ = problem.run(c, a, start)
     ids = np.unique(keyframes.track)
@@ -325,6 +321,6 @@ def of_frames(tracks, c, a, ids, light):
 
 
 def calibrate(clip, radii):
-    """-> {exposures of the backend and fast ones, log2}, falloff at the radii, f^-1 at the levels 0..255."""
+    """-> log2 exposures of the backend, fast ones, falloff at the radii, f^-1 at the levels 0..255."""
     c, a, ev, fast = fit(track(frames_of(clip)))
-    return {"ev": ev, "fast": fast}, attenuation(a, radii ** 2), inverse(c, np.arange(256))
+    return ev, fast, attenuation(a, radii ** 2), inverse(c, np.arange(256))
