@@ -8,8 +8,6 @@ response f (mean and four modes of EMoR), falloff V = 1 + a2 r^2 + a4 r^4 + a6 r
 
 by turns of a Levenberg-Marquardt step of (f, V, e) and a Gauss-Newton step of each radiance, over keyframes. The fast
 estimate of the paper gives the exposure of a frame from the radiances that its tracks had in the M frames before."""
-import subprocess
-
 import numpy as np
 
 import clips
@@ -25,21 +23,6 @@ MU, HUBER = 25.0, 4.0  # levels^2 per pixel^2, levels
 BLACK, WHITE = 4.0, 250.0  # grey values outside determine nothing
 MODES, TERMS = 4, 3
 ROUNDS, SETTLED, LEAST = 300, 1e-5, 1e-4  # turns, relative decrease of the energy in the last, smallest radiance
-
-
-def frames_of(path, width=clips.WIDTH, height=clips.HEIGHT):
-    """Luma of every frame, full range."""
-    reader = subprocess.Popen([clips.FFMPEG, "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray",
-                               "-"], stdout=subprocess.PIPE)
-    while True:
-        data = reader.stdout.read(width * height)
-        if len(data) < width * height:
-            break
-        yield np.frombuffer(data, np.uint8).reshape(height, width)
-    reader.wait()
-
-
-# --- tracks
 
 
 def patches(picture, xy, half):
@@ -154,9 +137,6 @@ def track(frames):
     return Tracks(*(np.concatenate(part) for part in zip(*rows)))
 
 
-# --- response and falloff
-
-
 def sampled(tables, x):
     """Tables over 0..1 at x, [..., n], linear in between, and their slopes."""
     at = np.clip(x, 0.0, 1.0) * (tables.shape[-1] - 1)
@@ -186,9 +166,6 @@ def huber(r):
     """Its value, and the weight of r^2 in its normal equations."""
     size = np.abs(r)
     return np.where(size < HUBER, r * r / 2, HUBER * (size - HUBER / 2)), HUBER / np.maximum(size, HUBER)
-
-
-# --- the fit
 
 
 class Fit:
@@ -322,5 +299,5 @@ def of_frames(tracks, c, a, ids, light):
 
 def calibrate(clip, radii):
     """-> log2 exposures of the backend, fast ones, falloff at the radii, f^-1 at the levels 0..255."""
-    c, a, ev, fast = fit(track(frames_of(clip)))
+    c, a, ev, fast = fit(track(clips.luma_of(clip)))
     return ev, fast, attenuation(a, radii ** 2), inverse(c, np.arange(256))

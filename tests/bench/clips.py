@@ -15,6 +15,7 @@ HIGH = 660  # of the strip of pictures, px
 MEAN = 0.2  # linear light at which the automatic exposure aims
 FOLLOWS = 0.08  # share of the difference that it removes per frame
 FINE = np.linspace(0.0, 1.0, 65537)
+BT709 = np.array([0.0722, 0.7152, 0.2126], np.float32)  # luma of blue, green, red
 
 
 def s_curve(e):
@@ -226,6 +227,34 @@ def encoder(path, words, crf, wide):
                              "bt709", "-color_range", "tv", "-crf", str(crf), *words, str(path)], stdin=subprocess.PIPE)
 
 
+def luma_of(path, width=WIDTH, height=HEIGHT):
+    """Every frame, full range, 8 bits."""
+    reader = subprocess.Popen([FFMPEG, "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                              stdout=subprocess.PIPE)
+    while True:
+        data = reader.stdout.read(width * height)
+        if len(data) < width * height:
+            break
+        yield np.frombuffer(data, np.uint8).reshape(height, width)
+    reader.wait()
+
+
+def blocks(luma):
+    """Means of 16 x 16 pixels."""
+    return luma.reshape(HEIGHT // 16, 16, WIDTH // 16, 16).mean((1, 3))
+
+
+def encoding(path, rendered, response):
+    """EV by which the codec changed each frame: the median over blocks of what decoded and rendered luma tell."""
+    table, changes = RESPONSES[response](FINE) * 255, []
+    for before, luma in zip(rendered, luma_of(path)):
+        after = blocks(luma)
+        used = (np.minimum(before, after) > 20) & (np.maximum(before, after) < 235)
+        told = [np.log2(np.interp(values[used], table, FINE)) for values in (after, before)]
+        changes.append(float(np.median(told[0] - told[1])) if used.any() else 0.0)
+    return changes
+
+
 def render(c, seed, folder, photographs=None):
     """Writes folder/clip.*, times.txt and truth.json -> (path of the clip, truth). c: USUAL with the changes of a case."""
     folder = pathlib.Path(folder)
@@ -238,16 +267,18 @@ def render(c, seed, folder, photographs=None):
     top = 65535 if wide else 255
     table = (RESPONSES[c["response"]](FINE) * top).astype(np.float32)
     m = falloff(c["k"], radius2())[..., None]
-    coder = encoder(folder / ("clip" + end), words, c["crf"], wide)
+    coder, rendered = encoder(folder / ("clip" + end), words, c["crf"], wide), []
     for i in range(c["frames"]):
         light = scene.light(i) * m * np.float32(2 ** ev[i])
         value = table[(np.clip(light, 0, 1) * 65536 + 0.5).astype(np.int32)]
+        rendered.append(blocks(value @ BT709) * (255 / top))
         value += np.float32(c["noise"] * top / 255) * random.standard_normal(value.shape, np.float32)
         coder.stdin.write(np.clip(value + 0.5, 0, top).astype(np.uint16 if wide else np.uint8).tobytes())
     coder.stdin.close()
     if coder.wait():
         raise RuntimeError("FFmpeg cannot encode %s" % c["codec"])
-    truth = {"ev": ev.tolist(), "k": c["k"], "response": c["response"], "clip": "clip" + end}
+    truth = {"ev": ev.tolist(), "k": c["k"], "response": c["response"], "clip": "clip" + end,
+             "encoding": encoding(folder / ("clip" + end), rendered, c["response"])}
     (folder / "truth.json").write_text(json.dumps(truth) + "\n")
     (folder / "times.txt").write_text("".join("%05d %.6f %.6f\n" % (i + 1, i / RATE, 10 * 2 ** e) for i, e in enumerate(ev)))
     return folder / ("clip" + end), truth

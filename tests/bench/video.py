@@ -64,14 +64,16 @@ def response_error(g, response):
 
 
 def errors(truth, ev, fall, g, exponent):
-    """After removing an exponent and the mean of the exposures. fall: falloff at RADII; g: f^-1 at 0..255."""
+    """After removing an exponent and the mean of the exposures. fall: falloff at RADII; g: f^-1 at 0..255. ev_decoded: of
+    the exposures as the codec left them, which smooths their jitter."""
     off = ev / exponent - np.array(truth["ev"])
-    off = off[np.isfinite(off)]
-    off -= off.mean()
+    known = np.isfinite(off)
+    off = off[known] - off[known].mean()
+    decoded = off - np.array(truth.get("encoding", np.zeros(len(ev))))[known]
     even = np.convolve(off, np.full(SMOOTH, 1 / SMOOTH), "valid")
     fall = np.maximum(fall / fall[0], 1e-6) ** (1 / exponent)
     largest, of_levels = response_error(np.power(np.maximum(g / g[255], 0), 1 / exponent), truth["response"])
-    return {"ev": rms(off), "ev_largest": float(np.abs(off).max()), "drift": float(np.ptp(even)),
+    return {"ev": rms(off), "ev_decoded": float(decoded.std()), "ev_largest": float(np.abs(off).max()), "drift": float(np.ptp(even)),
             "falloff": float(np.abs(fall - clips.falloff(truth["k"], RADII ** 2)).max()), "response": largest,
             "response_rms": of_levels}
 
@@ -124,7 +126,7 @@ def measure(case, seed, photographs, peer):
     shutil.rmtree(folder, ignore_errors=True)
     c = settings(case)
     clip, truth = clips.render(c, seed, folder, photographs)
-    record = {"case": case, "seed": seed, "frames": c["frames"], "kilobytes": clip.stat().st_size // 1024,
+    record = {"case": case, "seed": seed, "frames": c["frames"], "kilobytes": clip.stat().st_size // 1024, "encoding": float(np.std(truth["encoding"])),
               "times": run_lensprof(clip, truth, folder / "times", folder / "times.txt"),
               "alone": run_lensprof(clip, truth, folder / "alone", None)}
     if peer:

@@ -8,8 +8,9 @@ falloff 1 - 0.45 r^2 (corner 0.55), exposures over 2 EV and 0.03 EV of jitter, n
 states otherwise. Pan: 4 pixels per frame over a strip of {source}; room: a walk through a room with walls and panels
 of them, with parallax and occlusion. S curve: with toe and shoulder, not a gamma. Exposures: RMS and largest error,
 EV, after removing the mean; drift: peak to peak of the error, averaged over 25 frames; falloff: largest error over the
-radius; response: largest error at the levels 8 to 250, levels, at the best scale. The worse of the seeds. CPU: seconds
-of one clip."""
+radius; response: largest error at the levels 8 to 250, levels, at the best scale. The worse of the seeds. CPU: seconds of
+one clip. Encoding: by how much the codec changed the brightness of the frames, EV, RMS after removing the mean, most of
+it jitter that it leaves out; decoded: RMS error of the exposures compared with those of the decoded frames."""
 
 ALONE = """Without exposure times: after the exponent that fits the true exposures best, which a clip alone does not
 determine (with fixed exposures: the true response); exponent: the smallest and the largest. As stated: with the
@@ -46,11 +47,11 @@ def video(results):
     source = "photographs" if results["photographs"] else "painted pictures"
     names = ("exposures", "drift", "falloff", "response")
     lines = ["## Clips", "", READING.format(source=source), "", "With exposure times:", ""]
-    lines += header("case", "runs", "usable", *names, "segments", "frames without an exposure", "CPU, s", "peak, MB")
+    lines += header("case", "runs", "encoding", "usable", *names, "decoded", "segments", "frames without an exposure", "CPU, s", "peak, MB")
     for case, records in by_case.items():
         of = [r["times"] for r in records]
-        lines.append(row(case, len(of), sum(r["code"] == 0 for r in of), *figures(of, "raw"),
-                         *(max((r.get(key, 0) for r in of)) for key in ("segments", "without_ev")), worst(of, "cpu_s"),
+        lines.append(row(case, len(of), worst(records, "encoding"), sum(r["code"] == 0 for r in of), *figures(of, "raw"),
+                         worst(of, "raw", "ev_decoded"), *(max((r.get(key, 0) for r in of)) for key in ("segments", "without_ev")), worst(of, "cpu_s"),
                          worst(of, "peak_mb")))
     lines += ["", ALONE, ""]
     lines += header("case", "usable", "exponent", *names, "as stated: exposures", "falloff", "response",
