@@ -8,9 +8,10 @@ falloff 1 - 0.45 r^2 (corner 0.55), exposures over 2 EV and 0.03 EV of jitter, n
 states otherwise. Pan: 4 pixels per frame over a strip of {source}; room: a walk through a room with walls and panels
 of them, with parallax and occlusion. S curve: with toe and shoulder, not a gamma. Exposures: RMS and largest error,
 EV, after removing the mean; drift: peak to peak of the error, averaged over 25 frames; falloff: largest error over the
-radius; response: largest error at the levels 8 to 250, levels, at the best scale. The worse of the seeds. CPU: seconds of
-one clip. Encoding: by how much the codec changed the brightness of the frames, EV, RMS after removing the mean, most of
-it jitter that it leaves out; decoded: RMS error of the exposures compared with those of the decoded frames."""
+radius; response: largest error at the levels 8 to 250, levels, at the best scale. The worse of the seeds. Fixed
+exposures leave the exponent open, also with times. CPU: seconds of one clip. Encoding: by how much the codec changed
+the brightness of the frames, EV, RMS after removing the mean, most of it jitter that it leaves out; decoded: RMS error
+of the exposures compared with those of the decoded frames."""
 
 ALONE = """Without exposure times: after the exponent that fits the true exposures best, which a clip alone does not
 determine (with fixed exposures: the true response); exponent: the smallest and the largest. As stated: with the
