@@ -25,9 +25,10 @@ import timelapse
 import tools
 import trials
 import verdicts
+import video
 
 PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "sweep", "timelapse",
-         "scale", "speed", "radiance", "knowledge", "photographs", "frames-registration", "reconstruction", "real")
+         "video", "scale", "speed", "radiance", "knowledge", "photographs", "frames-registration", "reconstruction", "real")
 
 
 def parse():
@@ -49,8 +50,9 @@ def parse():
     options.only = options.only.split(",")
     if set(options.only) - set(PARTS):
         p.error("--only: use " + ", ".join(PARTS))
-    if options.real and not real.projects_below(options.real) and not photographs.moving(options.real):
-        p.error("--real %s: holds no pano.pto or hugin.pto, and no reconstruction" % options.real)
+    if options.real and not (real.projects_below(options.real) or photographs.moving(options.real) or
+                             video.photographs_of(options.real)):
+        p.error("--real %s: holds no pano.pto or hugin.pto, no reconstruction, and no src_pano" % options.real)
     return options
 
 
@@ -65,7 +67,8 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "timelapse": {}, "scale": [], "speed": {},
+               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "sweep": [], "timelapse": {},
+               "video": {}, "scale": [], "speed": {},
                "verdicts": {}, "cards": {}, "forms": {}, "trials": {}, "radiance": {}, "knowledge": [],
                "photographs": [], "moving": [], "frames": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
@@ -81,6 +84,8 @@ def main():
         results["static"] = static.run_all(options.quick, say)
     if "timelapse" in options.only:
         results["timelapse"] = timelapse.run_all(options.quick, options.match, say)
+    if "video" in options.only:
+        results["video"] = video.run_all(options.real, options.quick, options.tune, options.match, say)
     if "sweep" in options.only:
         results["sweep"] = sweep.run_all(options.quick, options.tune, options.match, say)
     for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),

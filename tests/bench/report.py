@@ -499,6 +499,7 @@ def document(results):
     from reconstruction_tables import tables
     from trial_tables import trials
     from verdict_tables import verdicts
+    from video_tables import video
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
         lines += ["**SKIPPED: %s**" % results["skipped"], ""]
@@ -510,7 +511,8 @@ def document(results):
                       " noise of 2 levels, unless the case states otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + verdicts(results["verdicts"])
     lines += flat(results["flat"]) + cards(results["cards"]) + forms(results["forms"]) + trials(results["trials"])
-    lines += static(results["static"]) + sweep(results["sweep"]) + timelapse(results["timelapse"]) + scale(results["scale"]) + speed(results["speed"])
+    lines += static(results["static"]) + sweep(results["sweep"]) + timelapse(results["timelapse"])
+    lines += video(results["video"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
     lines += photographs(results["photographs"]) + moving(results["moving"]) + of_frames(results["frames"])
     lines += tables(results["reconstruction"])

@@ -6,8 +6,7 @@
 #                      [--sequences N] [--tune]
 #                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, cards, forms (shading
 #                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, sweep, timelapse,
-#                      scale,
-#                      speed, radiance, knowledge, photographs (also of --real DIR), frames-registration,
+#                      video (over the photographs DIR/src_pano/*.jpg, else painted scenes), scale, speed, radiance, knowledge, photographs (also of --real DIR), frames-registration,
 #                      reconstruction (with colmap; also DIR/reconstruction), real (pano.pto and hugin.pto below DIR,
 #                      and folders of DIR/brackets)
 #   tests/bench/run.sh --only reconstruction --match terrain,drone   only these sets: terrain, room, drone, and with
