@@ -87,8 +87,8 @@ void declare(Command &command, CalibrateOptions &o) {
         "reasons. A second run does only what is missing or has changed, also after an interrupt. Originals\n"
         "are never modified. Of a video, or the frames of a moving camera, the folder receives the\n"
         "response (pcalib.txt), the falloff (vignette.png) and the exposure of every frame (times.txt,\n"
-        "exposures.csv, exposures.svg). Exit code 0: something was corrected, and the rest is listed;\n"
-        "4: nothing could be corrected; 3: no picture could be read.");
+        "exposures.csv, exposures.json, exposures.svg). Exit code 0: something was corrected, and the rest is\n"
+        "listed; 4: nothing could be corrected; 3: no picture could be read.");
     command.example("lensprof calibrate holiday -o holiday/calibrated");
 }
 

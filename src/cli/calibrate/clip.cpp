@@ -118,15 +118,6 @@ void report_times(const ClipTracks &clip, double error_ev, Streams &streams) {
 
 Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, const std::vector<std::string> &written,
                const ClipOutput *levelled) {
-    Json frames = Json::array();
-    for (const ClipFrame &frame : clip.frames)
-        frames.push_back({{"seconds", frame.seconds},
-                          {"state", clip_state_name(frame.state)},
-                          {"segment", frame.segment},
-                          {"ev", number_or_null(frame.exposure.ev)},
-                          {"ev_sigma", frame.ev_sigma},
-                          {"keyframe", frame.is_keyframe},
-                          {"repeats", frame.repeats}});
     return {{"codec", clip.info.codec},
             {"width", clip.info.width},
             {"height", clip.info.height},
@@ -137,7 +128,7 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, c
             {"points", fit.points},
             {"observations", fit.observations},
             {"times_rms_ev", number_or_null(fit.known_error_ev)},
-            {"frames", frames},
+            {"frames", clip_frames_json(clip)},
             {"video", levelled ? levelled->json() : Json()},
             {"written", written}};
 }

@@ -65,6 +65,20 @@ std::string exposure_table(const ClipTracks &clip) {
 
 }  // namespace
 
+Json clip_frames_json(const ClipTracks &clip) {
+    Json frames = Json::array();
+    for (const ClipFrame &frame : clip.frames)
+        frames.push_back({{"seconds", frame.seconds},
+                          {"state", clip_state_name(frame.state)},
+                          {"segment", frame.segment},
+                          {"ev", number_or_null(frame.exposure.ev)},
+                          {"ev_sigma", frame.ev_sigma},
+                          {"white_balance", frame.exposure.white_balance},
+                          {"keyframe", frame.is_keyframe},
+                          {"repeats", frame.repeats}});
+    return frames;
+}
+
 const char *clip_state_name(ClipState state) {
     return state == ClipState::measured ? "measured" : state == ClipState::blank ? "blank" : "unlinked";
 }
@@ -111,13 +125,14 @@ std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip,
 std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
                                          OutputFiles &outputs) {
     const std::string times = path_in(folder, "times.txt"), table = path_in(folder, "exposures.csv"),
-                      chart = path_in(folder, "exposures.svg");
+                      list = path_in(folder, "exposures.json"), chart = path_in(folder, "exposures.svg");
     outputs.add(times, times_text(clip, offset_ev));
     outputs.add(table, exposure_table(clip));
+    outputs.add(list, Json{{"schema", json_schema}, {"frames", clip_frames_json(clip)}}.dump(1) + "\n");
     const std::string title =
         counted(clip.frames.size(), "frame") + " of " + std::filesystem::path(clip.path).filename().string();
     outputs.add(chart, exposure_chart(charted(clip), true, title, chart));
-    return {times, table, chart};
+    return {times, table, list, chart};
 }
 
 }  // namespace lensprof

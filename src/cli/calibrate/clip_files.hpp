@@ -6,6 +6,7 @@
 
 #include "photo/base/output_file.hpp"
 #include "photo/clip/clip_calibration.hpp"
+#include "photo/report/report.hpp"
 
 namespace lensprof {
 
@@ -21,9 +22,12 @@ double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
                                      OutputFiles &outputs);
 
-// times.txt, exposures.csv and exposures.svg.
+// times.txt, exposures.csv, exposures.json and exposures.svg.
 std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
                                          OutputFiles &outputs);
+
+// The frames as exposures.json and --json list them.
+Json clip_frames_json(const ClipTracks &clip);
 
 const char *clip_state_name(ClipState state);
 
