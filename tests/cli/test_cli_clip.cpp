@@ -164,10 +164,23 @@ void test_refusals(void **) {
     assert_int_equal(wrong.code, not_usable);
     assert_true(contains(wrong.err, "the given exposure times differ from what the frames show by"));
     assert_false(fs::exists(in_folder("nothing")));
+    std::ofstream late(in_folder("late.txt"));
+    for (uint32_t i = 0; i < frames; i++)
+        late << i << " " << i << " " << 10.0 * std::exp2(true_ev(i ? i - 1 : 0)) << "\n";
+    late.close();
+    assert_true(contains(
+        run_words({"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("late.txt")}).err,
+        "fit the frames better if they are moved up by 1 line"));
+    assert_true(
+        contains(run_words({"calibrate", in_folder("moving"), in_folder("brief"), "-o", in_folder("nothing")}).err,
+                 "moving: is a clip, which is calibrated alone"));
+    std::ofstream(in_folder("junk.mp4")) << "not a video";
+    assert_true(contains(run_words({"calibrate", in_folder("junk.mp4"), "-o", in_folder("nothing")}).err,
+                         "junk.mp4: is not a video, or its beginning is damaged"));
     for (const Words &option : {Words{"--moving"}, {"--fps", "5"}, {"--frames", in_folder("levelled")}})
         assert_true(
             contains(run_words(Words{"calibrate", in_folder("few.txt"), "-o", in_folder("nothing")} + option).err,
-                     option[0] + ": needs one video"));
+                     option[0] + ": is for clips; give one video"));
 }
 
 int set_up(void **state) {
@@ -180,11 +193,8 @@ int set_up(void **state) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_video),
-        cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_deflicker),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_folder),    cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_deflicker), cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

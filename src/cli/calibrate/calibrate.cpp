@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -106,11 +107,25 @@ void check_report(const CalibrateOptions &o) {
     if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
-// Whether the inputs are one clip. Failure (usage) for options of a clip without one.
+// Failure for a file with the name of a video that is not a video.
+void check_video_name(const std::string &path) {
+    static const std::set<std::string> suffixes = {"mp4",  "mov", "mkv", "webm", "avi", "m4v", "mpg",
+                                                   "mpeg", "ts",  "mts", "m2ts", "wmv", "3gp", "mxf"};
+    if (!path_exists(path) || is_folder(path) || !suffixes.count(lowercase_extension(path)) || is_video(path)) return;
+    throw Failure(LENSPROF_ERROR_READ, path + ": is not a video, or its beginning is damaged; give an intact file");
+}
+
+// Whether the inputs are one clip. Failure (usage) for several clips, and for options of a clip without one.
 bool is_clip(const CalibrateOptions &o) {
     const bool is_one = o.inputs.size() == 1;
-    if (is_one && (is_video(o.inputs[0]) || is_frame_folder(o.inputs[0]))) return true;
-    if (is_one && o.is_moving && is_folder(o.inputs[0])) return true;
+    for (const std::string &input : o.inputs) {
+        check_video_name(input);
+        if (!is_video(input) && !is_frame_folder(input) && !(o.is_moving && is_folder(input))) continue;
+        if (!is_one)
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          input + ": is a clip, which is calibrated alone; give one clip, without other inputs");
+        return true;
+    }
     for (const auto &[is_given, name] : {std::pair{o.is_moving, "--moving"},
                                          {o.frames_per_s > 0.0, "--fps"},
                                          {!o.times.empty(), "--times"},
@@ -118,9 +133,13 @@ bool is_clip(const CalibrateOptions &o) {
                                          {!o.to.empty(), "--to"},
                                          {!o.codec.name.empty(), "--codec"}})
         if (is_given)
-            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(name)
-                                                       + ": needs one video, or one folder of frames with --moving; give "
-                                                         "one, or omit the option");
+            throw Failure(
+                LENSPROF_ERROR_ARGUMENT,
+                std::string(name)
+                    + (is_one && is_folder(o.inputs[0])
+                           ? ": is for clips; to read " + o.inputs[0] + " as frames of a moving camera, add --moving"
+                           : std::string(": is for clips; give one video or one folder of frames, or omit "
+                                         "the option")));
     return false;
 }
 

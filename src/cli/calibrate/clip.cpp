@@ -34,7 +34,7 @@ lensprof_profile_key clip_key(const VideoInfo &info) {
 
 struct Tally {
     size_t measured = 0, blank = 0, unlinked = 0, repeats = 0;
-    uint32_t segments = 0;
+    uint32_t segments = 0, groups = 0;
     double low_ev = INFINITY, high_ev = -INFINITY;
 
     explicit Tally(const ClipTracks &clip) {
@@ -42,7 +42,7 @@ struct Tally {
             (frame.state == ClipState::measured ? measured : frame.state == ClipState::blank ? blank : unlinked)++;
             repeats += frame.repeats;
             if (frame.state != ClipState::measured) continue;
-            segments = std::max(segments, frame.segment + 1);
+            segments = std::max(segments, frame.segment + 1), groups = std::max(groups, frame.group + 1);
             low_ev = std::min(low_ev, frame.exposure.ev), high_ev = std::max(high_ev, frame.exposure.ev);
         }
     }
@@ -50,8 +50,8 @@ struct Tally {
 
 [[noreturn]] void refuse_static(const ClipTracks &clip) {
     throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                  clip.path + ": the camera does not move in the first " + counted(clip.frames.size(), "frame")
-                      + ", which do not show its falloff; to level the exposure of a stationary camera use `lensprof "
+                  clip.path + ": the camera does not move in the first " + counted(clip.shown_frames, "frame")
+                      + (clip.shown_frames < clip.frames_in_clip ? " that are neither black nor white" : "") + ", which do not show its falloff; to level the exposure of a stationary camera use `lensprof "
                         "deflicker`, or give the part of the clip in which it moves",
                   LENSPROF_REASON_FEW_PAIRS);
 }
@@ -94,10 +94,17 @@ void report_frames(const ClipFit &fit, const ClipTracks &clip, const Tally &tall
         note(streams, clip.path + ": is shown rotated; the vignette and frames are as stored");
     if (tally.segments > 1)
         note(streams, clip.path + ": new scenes begin at frames " + breaks_of(clip)
-                          + (std::isfinite(fit.known_error_ev) ? "; the given times connect them"
-                                                               : "; exposures are relative to the mean of each scene"));
+                          + (tally.groups < 2 ? "; the given times connect them"
+                                              : "; exposures are relative to the mean of each scene"));
     if (tally.blank)
         note(streams, clip.path + ": " + counted(tally.blank, "frame") + " black or white, without exposure");
+    if (2 * tally.measured < clip.frames.size())
+        warn(streams,
+             clip.path + ": most frames have no exposure; if they are not in the order of recording, sort them");
+    constexpr size_t few_keyframes = 10;
+    if (fit.keyframes.size() < few_keyframes)
+        warn(streams, clip.path + ": only " + counted(fit.keyframes.size(), "frame")
+                          + " determine the result; record several seconds for a response and falloff to rely on");
     if (tally.unlinked)
         warn(streams, clip.path + ": " + counted(tally.unlinked, "frame")
                           + " without exposure, because too few scene points are found in others");
@@ -127,7 +134,7 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, c
             {"segments", tally.segments},
             {"points", fit.points},
             {"observations", fit.observations},
-            {"times_rms_ev", number_or_null(fit.known_error_ev)},
+            {"times_rms_ev", number_or_null(fit.known.rms_ev)},
             {"frames", clip_frames_json(clip)},
             {"video", levelled ? levelled->json() : Json()},
             {"written", written}};
@@ -206,7 +213,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
         print_clip(fit, clip, tally, written, levelled.get(), streams.out);
     }
     report_frames(fit, clip, tally, streams);
-    report_times(clip, fit.known_error_ev, streams);
+    report_times(clip, fit.known.rms_ev, streams);
     for (const Notice &notice : outcome.notices.list) events.notice(notice.severity, notice.item, notice.text);
     if (!outcome.is_good) print_message(streams, outcome.refusal);
     return static_cast<int>(outcome.is_good ? ExitCode::done : ExitCode::not_usable);

@@ -63,6 +63,20 @@ std::string exposure_table(const ClipTracks &clip) {
     return text;
 }
 
+// The time stamps of lines and of a video span the same time, in seconds, milliseconds, microseconds or nanoseconds.
+void check_time_stamps(const std::string &path, const std::vector<TimesLine> &lines, const ClipTracks &clip) {
+    const double stated = lines.back().time_stamp - lines.front().time_stamp,
+                 seen_s = clip.frames.back().seconds - clip.frames.front().seconds;
+    for (const double unit : {1.0, 1e3, 1e6, 1e9})
+        if (std::abs(stated / unit - seen_s) < 0.1 * seen_s) return;
+    throw Failure(
+        LENSPROF_ERROR_READ,
+        path
+            + format(": its time stamps span %.6g, but the frames of %s %.6g s; give the file that belongs to "
+                     "the clip, or the clip's own time stamps",
+                     stated, clip.path.c_str(), seen_s));
+}
+
 }  // namespace
 
 Json clip_frames_json(const ClipTracks &clip) {
@@ -91,6 +105,8 @@ std::vector<double> read_clip_times(const std::string &path, const ClipTracks &c
                           + format(": has %zu lines, but the clip has %llu frames; give a line for "
                                    "each frame",
                                    lines.size(), static_cast<unsigned long long>(clip.frames_in_clip)));
+    if (lines.size() == clip.frames_in_clip && clip.frames.size() == clip.frames_in_clip && !is_folder(clip.path))
+        check_time_stamps(path, lines, clip);
     std::vector<double> of_frames;
     for (size_t i = 0; i < clip.frames.size(); i++)
         of_frames.push_back(lines[lines.size() == clip.frames_in_clip ? clip.frames[i].number : i].ev);
@@ -131,7 +147,7 @@ std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_e
     outputs.add(list, Json{{"schema", json_schema}, {"frames", clip_frames_json(clip)}}.dump(1) + "\n");
     const std::string title =
         counted(clip.frames.size(), "frame") + " of " + std::filesystem::path(clip.path).filename().string();
-    outputs.add(chart, exposure_chart(charted(clip), true, title, chart));
+    outputs.add(chart, exposure_chart(charted(clip), true, title, chart, ChartOf::exposures));
     return {times, table, list, chart};
 }
 

@@ -1,6 +1,8 @@
 #include "cli/calibrate/levelled_clip.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "cli/calibrate/clip_files.hpp"
 #include "photo/base/format.hpp"
@@ -11,28 +13,39 @@
 namespace lensprof {
 namespace {
 
-// The exposure that levelled frames have, per segment: its mean, that of its first frame that is measured, or that of a
-// frame, for its segment alone.
+// The exposure that levelled frames have, per segment: the mean of its group, or the exposure of the group's first
+// frame that is measured or of a given one. The white balance of that frame is only for its own segment.
 std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip) {
-    std::vector<lensprof_exposure> wanted;
     const size_t named = to == "mean" || to == "first" || to.empty() ? 0 : frame_number(to);
-    for (const ClipFrame &frame : clip.frames) {
-        if (frame.state != ClipState::measured || frame.segment < wanted.size()) continue;
-        lensprof_exposure mean;
-        lensprof_exposure_init(&mean);
-        wanted.resize(frame.segment + 1, mean);
-        if (to == "first") wanted.back() = frame.exposure;
-    }
-    if (named == 0) return wanted;
     if (named > clip.frames.size())
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + to + ": " + clip.path + " has "
                                                    + counted(clip.frames.size(), "frame") + "; name one of them");
-    const ClipFrame &frame = clip.frames[named - 1];
-    if (frame.state != ClipState::measured)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--to " + to + ": this frame is " + clip_state_name(frame.state) + "; name another one");
-    wanted[frame.segment] = frame.exposure;
+    if (named > 0 && clip.frames[named - 1].state != ClipState::measured)
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            "--to " + to + ": this frame is " + clip_state_name(clip.frames[named - 1].state) + "; name another one");
+    std::vector<lensprof_exposure> wanted;
+    std::map<uint32_t, const ClipFrame *> of_group;
+    if (named > 0) of_group[clip.frames[named - 1].group] = &clip.frames[named - 1];
+    for (const ClipFrame &frame : clip.frames) {
+        if (frame.state != ClipState::measured || frame.segment < wanted.size()) continue;
+        if (to == "first") of_group.emplace(frame.group, &frame);
+        lensprof_exposure exposure;
+        lensprof_exposure_init(&exposure);
+        const auto found = of_group.find(frame.group);
+        if (found != of_group.end()) {
+            if (found->second->segment == frame.segment) exposure = found->second->exposure;
+            exposure.ev = found->second->exposure.ev;
+        }
+        wanted.resize(frame.segment + 1, exposure);
+    }
     return wanted;
+}
+
+// Whether some frames cannot be compared with others.
+bool has_groups(const ClipTracks &clip) {
+    return std::any_of(clip.frames.begin(), clip.frames.end(),
+                       [&](const ClipFrame &frame) { return frame.state == ClipState::measured && frame.group > 0; });
 }
 
 // Decodes the clip again and writes its frames at the wanted exposure of their segment without falloff. Frames that are
@@ -120,7 +133,7 @@ void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &
     const auto wanted = wanted_exposures(o.to, clip);
     const auto unmeasured = write_levelled_frames(fit, clip, wanted, rate, output, events);
     if (has_transforms(o.input)) write_transforms(o, clip, wanted, output);
-    if (wanted.size() > 1 && frame_number(o.to) > 0)
+    if (has_groups(clip) && frame_number(o.to) > 0)
         events.note(o.levelled, "scenes without the frame " + o.to + " have their mean exposure");
     if (unmeasured.empty()) return;
     std::vector<std::string> names;

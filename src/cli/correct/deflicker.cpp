@@ -436,6 +436,10 @@ int run(const DeflickerOptions &o, Streams &streams) {
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--keep-light and --to exclude each other: both choose the exposure of "
                       "the frames; give one of them");
+    for (const std::string &file : o.files)
+        if (o.files.size() > 1 && is_video(file))
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          file + ": is a video, which is levelled alone; give one video, without other inputs");
     if (!o.chart.empty()) check_chart_name(o.chart);
     return o.is_clip() ? run_clip(o, streams) : run_pictures(o, streams);
 }

@@ -5,6 +5,7 @@
 
 #include "photo/base/format.hpp"
 #include "photo/base/memory_file.hpp"
+#include "photo/clip/camera_motion.hpp"
 #include "photo/video/video.hpp"
 
 namespace lensprof {
@@ -13,12 +14,24 @@ namespace {
 constexpr double fitting_tone_error = 0.03;  // of a response that fits
 constexpr size_t most_compared = 16;         // frames that choose the response
 
-void fail_moving_clip(const std::string &clip, double motion) {
+[[noreturn]] void fail_moving_clip(const std::string &clip, double motion) {
     throw Failure(LENSPROF_ERROR_NOT_USABLE,
                   clip
                       + format(": the camera moves by %.1f %% of the frame from frame to frame; use `lensprof "
                                "calibrate`, which levels frames of a moving camera",
                                100.0 * motion));
+}
+
+// Frames that move little from one to the next are followed, but what falls off towards the corners moves over them.
+void check_motion(const std::string &clip, const CameraMotion &motion, Events &events) {
+    constexpr double most_per_frame = 0.01, much_travel = 0.1;
+    if (motion.per_frame() > most_per_frame) fail_moving_clip(clip, motion.per_frame());
+    if (motion.travel() > much_travel)
+        events.warn(clip,
+                    format("the camera moves by %.0f %% of the frame in the first seconds; its falloff stays in the "
+                           "frames, and its exposures are less exact than those of `lensprof calibrate`, which "
+                           "measures both for a moving camera",
+                           100.0 * motion.travel()));
 }
 
 void check_clip_region(const MeasureOptions &o, const std::string &clip, const VideoInfo &info) {
@@ -43,9 +56,15 @@ MeasuredSequence measure_with_response(const std::string &clip, const MeasureOpt
     measured.deflicker = new_deflicker(o, response, {info.width, info.height});
     lensprof_error error{};
     uint32_t count = 0;
+    CameraMotion motion;
+    const bool is_first_look = sequence.frames.empty();
     for (VideoFrame frame; reader.next(frame); count++) {
         stop_if_cancelled();
         reader.read(frame.picture);
+        if (is_first_look && !motion.is_known()) {
+            motion.add(frame.picture, frame.seconds);
+            if (motion.is_known()) check_motion(clip, motion, events);
+        }
         lensprof_deflicker_facts facts;
         lensprof_deflicker_facts_init(&facts);
         facts.seconds = frame.seconds;
@@ -57,6 +76,7 @@ MeasuredSequence measure_with_response(const std::string &clip, const MeasureOpt
     events.clear();
     if (count < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, clip + ": has only one frame; give a clip", LENSPROF_REASON_FEW_PAIRS);
+    if (is_first_look && !motion.is_known()) check_motion(clip, motion, events);
     take_measurement(clip, count, measured);
     if (measured.result.moving) fail_moving_clip(clip, measured.result.motion);
     return measured;

@@ -38,7 +38,7 @@ struct ExposureAxes {
     double y(double ev) const { return plot_top + plot_height * (high - ev) / (high - low); }
 };
 
-void draw_axes(cairo_t *cr, const ExposureAxes &axes, bool has_times, const std::string &title) {
+void draw_axes(cairo_t *cr, const ExposureAxes &axes, bool has_times, const std::string &title, ChartOf shown) {
     set_font(cr, text_size);
     cairo_set_line_width(cr, 1);
     const double ev_step = round_step(axes.high - axes.low, 8), step = round_step(axes.end - axes.begin, 10);
@@ -57,7 +57,8 @@ void draw_axes(cairo_t *cr, const ExposureAxes &axes, bool has_times, const std:
     cairo_rectangle(cr, plot_left, plot_top, plot_width, plot_height);
     cairo_stroke(cr);
     draw_text(cr, plot_left + plot_width / 2, plot_top + plot_height + 42, has_times ? "time, s" : "frame", 0.5);
-    draw_rotated_text(cr, 24, plot_top + plot_height / 2, "light and exposure, EV");
+    draw_rotated_text(cr, 24, plot_top + plot_height / 2,
+                      shown == ChartOf::exposures ? "exposure, EV" : "light and exposure, EV");
     set_grey(cr, 0.1);
     set_font(cr, title_size, true);
     draw_text(cr, 20, 26, title, 0);
@@ -78,14 +79,15 @@ void draw_line(cairo_t *cr, const ExposureAxes &axes, const std::vector<Levelled
     cairo_stroke(cr);
 }
 
-void draw_frames(cairo_t *cr, const ExposureAxes &axes, const std::vector<LevelledFrame> &frames) {
+void draw_frames(cairo_t *cr, const ExposureAxes &axes, const std::vector<LevelledFrame> &frames, ChartOf shown) {
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
     cairo_set_line_width(cr, 1.2);
     set_curve_colour(cr, 1, 0.8);
     draw_line(cr, axes, frames, [](const LevelledFrame &frame) { return frame.measured.exposure.ev; });
     cairo_set_line_width(cr, 2);
     set_curve_colour(cr, 0);
-    draw_line(cr, axes, frames, [](const LevelledFrame &frame) { return frame.wanted.ev; });
+    if (shown == ChartOf::levelling)
+        draw_line(cr, axes, frames, [](const LevelledFrame &frame) { return frame.wanted.ev; });
     set_grey(cr, 0.2);
     for (const LevelledFrame &frame : frames) {
         if (frame.measured.state == LENSPROF_FRAME_LEVELLED) continue;
@@ -113,7 +115,7 @@ void draw_key(cairo_t *cr) {
 }  // namespace
 
 std::string exposure_chart(const std::vector<LevelledFrame> &frames, bool has_times, const std::string &title,
-                           const std::string &path) {
+                           const std::string &path, ChartOf shown) {
     return drawing_of(
         path,
         [](cairo_t *) {
@@ -123,9 +125,9 @@ std::string exposure_chart(const std::vector<LevelledFrame> &frames, bool has_ti
             const ExposureAxes axes(frames);
             set_grey(cr, 1);
             cairo_paint(cr);
-            draw_axes(cr, axes, has_times, title);
-            draw_frames(cr, axes, frames);
-            draw_key(cr);
+            draw_axes(cr, axes, has_times, title, shown);
+            draw_frames(cr, axes, frames, shown);
+            if (shown == ChartOf::levelling) draw_key(cr);
         });
 }
 

@@ -86,13 +86,20 @@ double contradiction_ev(const ClipFit &fit, const ClipTracks &clip) {
 
 // A fit that contradicts itself or the given times has a wrong response.
 void check_exposures(const ClipFit &fit, const ClipTracks &clip) {
-    if (fit.known_error_ev > largest_known_error_ev)
+    if (const int shift = fit.known.better_shift)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      clip.path
+                          + format(": the given exposure times fit the frames better if they are moved %s by %s; check "
+                                   "which line belongs to which frame",
+                                   shift > 0 ? "up" : "down", counted(size_t(std::abs(shift)), "line").c_str()),
+                      LENSPROF_REASON_KNOWN_CONTRADICT);
+    if (fit.known.rms_ev > largest_known_error_ev)
         throw Failure(
             LENSPROF_ERROR_NOT_USABLE,
             clip.path
                 + format(": the given exposure times differ from what the frames show by %.2f EV (rms); check "
                          "that each line belongs to its frame, or leave out the times",
-                         fit.known_error_ev),
+                         fit.known.rms_ev),
             LENSPROF_REASON_KNOWN_CONTRADICT);
     constexpr double largest_ev = 0.03;
     const double error_ev = contradiction_ev(fit, clip);
@@ -157,7 +164,7 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     name_images(report.names, report.verdict);
     report.exposures = best.exposures, report.reference = best.reference;
     events.update("exposures", 0.9);
-    fit_of_clip.known_error_ev = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
+    fit_of_clip.known = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
     check_exposures(fit_of_clip, clip);
     return fit_of_clip;

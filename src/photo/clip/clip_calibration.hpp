@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "photo/calibration/fit.hpp"
-#include "photo/clip/clip_tracks.hpp"
+#include "photo/clip/clip_exposures.hpp"
 
 namespace lensprof {
 
@@ -22,7 +22,7 @@ struct ClipFit {
     Fitted best;
     std::vector<uint32_t> keyframes;      // in the order of the fit
     size_t points = 0, observations = 0;  // of the fit
-    double known_error_ev = 0.0;          // of the frames' exposures from the known ones, rms; NaN: none is known
+    KnownAgreement known;                 // of the known exposures with the frames'
 
     std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone
 };

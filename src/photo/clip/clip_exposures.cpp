@@ -115,7 +115,7 @@ std::vector<uint32_t> find_segments(const std::vector<ChainRatio> &ratios, ClipT
         const bool is_alone = size[sets.of(i)] < 2;
         if (of_set == UINT32_MAX) of_set = i, number[i] = is_alone ? segments : segments++;
         set_of[i] = of_set;
-        clip.frames[i].segment = number[of_set];
+        clip.frames[i].segment = clip.frames[i].group = number[of_set];
         if (clip.frames[i].state != ClipState::blank)
             clip.frames[i].state = is_alone ? ClipState::unlinked : ClipState::measured;
     }
@@ -154,15 +154,18 @@ void set_exposures(const Levels &levels, ClipTracks &clip) {
     }
 }
 
-// Differences of the exposures from those known, EV rms, each segment relative to its mean; NaN: none is known.
-double error_of_known(const std::vector<double> &known_ev, const ClipTracks &clip) {
+// Differences of the exposures from those known `shift` frames later, EV rms, each segment relative to its mean; NaN:
+// none is known.
+double error_of_known(const std::vector<double> &known_ev, int shift, const ClipTracks &clip) {
     struct Sum {
         double value = 0.0, squares = 0.0, frames = 0.0;
     };
     std::map<uint32_t, Sum> of_segment;
     for (size_t i = 0; i < known_ev.size(); i++) {
-        if (clip.frames[i].state != ClipState::measured || std::isnan(known_ev[i])) continue;
-        const double difference = known_ev[i] - clip.frames[i].exposure.ev;
+        const size_t line = i + static_cast<size_t>(shift);  // beyond the end also for negative numbers
+        if (clip.frames[i].state != ClipState::measured || line >= known_ev.size() || std::isnan(known_ev[line]))
+            continue;
+        const double difference = known_ev[line] - clip.frames[i].exposure.ev;
         Sum &sum = of_segment[clip.frames[i].segment];
         sum.value += difference, sum.squares += difference * difference, sum.frames++;
     }
@@ -174,9 +177,21 @@ double error_of_known(const std::vector<double> &known_ev, const ClipTracks &cli
     return count > 0.0 ? std::sqrt(squares / count) : NAN;
 }
 
+KnownAgreement agreement_with(const std::vector<double> &known_ev, const ClipTracks &clip) {
+    constexpr double much_better = 0.5, shifted_ev = 0.02;
+    KnownAgreement agreement{error_of_known(known_ev, 0, clip), 0};
+    for (const int shift : {-2, -1, 1, 2}) {
+        const double error_ev = error_of_known(known_ev, shift, clip);
+        const double best_ev = agreement.better_shift ? error_of_known(known_ev, agreement.better_shift, clip)
+                                                      : much_better * agreement.rms_ev;
+        if (agreement.rms_ev > shifted_ev && error_ev < best_ev) agreement.better_shift = shift;
+    }
+    return agreement;
+}
+
 }  // namespace
 
-double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip) {
+KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip) {
     const std::vector<ChainRatio> ratios = ratios_of(clip, model);
     std::vector<uint32_t> group_of = find_segments(ratios, clip);
     std::vector<uint8_t> is_anchor(clip.frames.size());
@@ -184,8 +199,8 @@ double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTrac
     set_exposures(relative(chained_levels(ratios, is_anchor, 1), group_of, clip), clip);
     for (const ChainRatio &ratio : ratios)
         if (ratio.to == ratio.from + 1) clip.frames[ratio.to].ev_sigma = ratio.sigma;
-    const double error_ev = error_of_known(known.ev, clip);
-    if (!(error_ev < largest_known_error_ev)) return error_ev;
+    const KnownAgreement agreement = agreement_with(known.ev, clip);
+    if (!(agreement.rms_ev < largest_known_error_ev) || agreement.better_shift) return agreement;
     // The known exposures hold what the ratios add up to, and connect the segments.
     std::vector<uint8_t> is_known(clip.frames.size(), 0);
     for (uint32_t i = 0; i < is_known.size(); i++) is_known[group_of[i]] |= std::isfinite(known.ev[i]);
@@ -196,12 +211,15 @@ double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTrac
         is_anchor[first] = 0;
         joined = std::min(joined, first);
     }
-    for (uint32_t &group : group_of)
-        if (is_known[group]) group = joined;
+    for (uint32_t i = 0; i < group_of.size(); i++) {
+        if (!is_known[group_of[i]]) continue;
+        group_of[i] = joined;
+        clip.frames[i].group = clip.frames[joined].segment;
+    }
     const Levels held = relative(chained_levels(ratios, is_anchor, 1, known), group_of, clip);
     for (uint32_t i = 0; i < held.size(); i++)
         if (clip.frames[i].state == ClipState::measured) clip.frames[i].exposure.ev = held[i][1];
-    return error_ev;
+    return agreement;
 }
 
 }  // namespace lensprof

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "fit/base/chained.hpp"
 #include "photo/clip/clip_tracks.hpp"
@@ -15,12 +16,18 @@ struct ClipModel {
     std::array<lensprof_vignetting, 3> falloff;
 };
 
+// How known exposures agree with those of the frames.
+struct KnownAgreement {
+    double rms_ev = NAN;   // each segment relative to its mean; NaN: none is known
+    int better_shift = 0;  // frames by which the known exposures come too late, if they then agree much better
+};
+
 // Sets state, segment and exposure of all frames. Every frame is compared with those 1, 2, 4, ... 256 frames before it:
 // the ratio of two frames is the mode over the scene points that both show. The exposures are the least squares
 // solution of all ratios, so that errors do not add up over the life of a point. Frames that are not connected form
 // segments, each relative to its geometric mean. Known exposures, one per frame with NaN for none, hold and connect
-// segments unless they contradict the ratios by 0.1 EV (rms). Returns by how much the exposures differ from the known
-// ones without them, EV rms; NaN: none is known.
-double find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip);
+// segments unless they contradict the ratios by 0.1 EV (rms) or fit other frames. Returns how they agree before they
+// enter.
+KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip);
 
 }  // namespace lensprof

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int patch_side = 7;  // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
-constexpr size_t most_static_frames = 200;
+constexpr size_t most_static_frames = 120;
+constexpr double most_static_s = 3.0;
 
 // Sums of a channel over the samples of a patch.
 struct ChannelSums {
@@ -63,9 +64,17 @@ std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place,
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events) {
     ClipTracks clip;
     clip.path = path, clip.info = source.info();
+    if (!CornerTracker::can_follow(clip.info.width, clip.info.height))
+        throw Failure(
+            LENSPROF_ERROR_NOT_USABLE,
+            path
+                + format(": its frames of %u x %u pixels are too small to follow scene points; give a clip of "
+                         "64 pixels and more, of usual proportions",
+                         clip.info.width, clip.info.height),
+            LENSPROF_REASON_FEW_PAIRS);
     CornerTracker tracker;
     bool is_grey = true;
-    double next_s = 0.0;
+    double next_s = 0.0, shown_s = -1.0;
     for (VideoFrame frame; source.next(frame);) {
         clip.frames_in_clip++;
         stop_if_cancelled();
@@ -75,7 +84,9 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         const auto total = clip.info.frames;
         events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
                       counted(clip.frames_in_clip, "frame"));
-        if (clip.frames_in_clip == most_static_frames && clip.is_static()) break;
+        if (!tracked.is_blank && clip.shown_frames++ == 0) shown_s = frame.seconds;
+        if (clip.shown_frames >= most_static_frames && frame.seconds >= shown_s + most_static_s && clip.is_static())
+            break;
         if (taken_per_s > 0.0) {
             if (frame.seconds < next_s - 0.5 / std::max(taken_per_s, clip.info.frames_per_s)) continue;
             next_s = (std::floor(frame.seconds * taken_per_s + 0.5) + 1.0) / taken_per_s;

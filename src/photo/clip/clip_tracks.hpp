@@ -34,7 +34,9 @@ struct ClipFrame {
 
     ClipState state = ClipState::unlinked;
     uint32_t segment = 0;          // number of breaks before it
-    lensprof_exposure exposure{};  // relative to the mean of its segment; NaN unless measured
+    uint32_t group = 0;            // first segment of those that known exposures connect; without, `segment`
+    lensprof_exposure exposure{};  // EV relative to the mean of its group, white balance to that of its segment; NaN
+                                   // unless measured
     double ev_sigma = 0.0;         // of its ratio to the measured frame before it, EV
 };
 
@@ -43,14 +45,14 @@ struct ClipTracks {
     VideoInfo info;
     uint32_t channels = 3;
     std::vector<ClipFrame> frames;
-    uint64_t frames_in_clip = 0;
+    uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: neither black nor white
     double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
     bool is_static() const { return travel < 0.01; }
 };
 
 // Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). Follows scene
 // points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. Ends early (`is_static`)
-// where nothing moved in the first 200.
+// where nothing moves in the first 120 frames, of 3 s or more, that are neither black nor white.
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
 
 // The observations of the same tracks in two frames: call(a, b).

@@ -44,6 +44,22 @@ inline int matrix_of(AVColorSpace stated, int width, int height) {
     }
 }
 
+// Whether matrix_of is that of a stated matrix, or none is stated.
+inline bool has_known_matrix(AVColorSpace stated) {
+    switch (stated) {
+    case AVCOL_SPC_RGB:
+    case AVCOL_SPC_UNSPECIFIED:
+    case AVCOL_SPC_RESERVED:
+    case AVCOL_SPC_BT709:
+    case AVCOL_SPC_FCC:
+    case AVCOL_SPC_SMPTE170M:
+    case AVCOL_SPC_BT470BG:
+    case AVCOL_SPC_SMPTE240M:
+    case AVCOL_SPC_BT2020_NCL: return true;
+    default: return false;
+    }
+}
+
 inline bool is_rgb(AVPixelFormat format) {
     const auto *described = av_pix_fmt_desc_get(format);
     return described && (described->flags & AV_PIX_FMT_FLAG_RGB);

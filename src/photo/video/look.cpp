@@ -14,6 +14,7 @@ constexpr float shape_sigma = 0.02f;  // change of the shape since the frame bef
 constexpr float tilt_sigma = 0.8f;    // levels per px
 constexpr float gain_sigma = 0.5f;
 constexpr double most_px = 2.0, least_area = 0.4, most_area = 2.5;
+constexpr double most_left_px = 0.2;  // of the last step
 constexpr int most_rounds = 8;
 
 // Bilinear; the place is within the frame.
@@ -63,8 +64,10 @@ Look::Look(const cv::Mat &grey, cv::Point2f place) {
 bool Look::align(const cv::Mat &grey, Warp &warp) const {
     const Warp first = warp;
     Eigen::Matrix<float, side * side, 1> seen;
-    Vector found, change = Vector::Zero();  // of the shape since `first`, less the usual gain
-    change[gain_] = -1.0f;
+    Vector found, wanted = Vector::Zero();  // `wanted`: where the priors have their middle
+    wanted[gain_] = 1.0f;
+    float last_gain = 1.0f;
+    double shift_px = 0.0;
     for (int round = 0; round < most_rounds; round++) {
         if (!is_inside(grey, warp)) return false;
         for (int y = 0, n = 0; y < side; y++)
@@ -72,7 +75,7 @@ bool Look::align(const cv::Mat &grey, Warp &warp) const {
                 const Eigen::Vector2d at = warp(x - reach, y - reach);
                 seen[n] = value_at(grey, at.x(), at.y());
             }
-        found = inverse_ * (slopes_.transpose() * seen - prior_.cwiseProduct(change));
+        found = inverse_ * (slopes_.transpose() * seen + prior_.cwiseProduct(wanted));
         const float gain = found[gain_];
         if (!(gain > 0.1f)) return false;
         const Vector step = found / gain;
@@ -83,11 +86,14 @@ bool Look::align(const cv::Mat &grey, Warp &warp) const {
         const Eigen::Matrix2d inverse = shape.cast<double>().inverse();
         warp.place -= warp.shape * inverse * shift;
         warp.shape = warp.shape * inverse;
-        change.head<4>() += step.head<4>();
+        wanted.head<4>() = gain * (wanted.head<4>() / last_gain - step.head<4>());  // back to the shape of `first`
+        last_gain = gain;
         const double area = warp.shape.determinant();
         if (!(area > least_area && area < most_area) || (warp.place - first.place).norm() > most_px) return false;
-        if (shift.norm() < 0.01) break;
+        shift_px = shift.norm();
+        if (shift_px < 0.01) break;
     }
+    if (shift_px > most_left_px) return false;
     const float error = (seen - slopes_ * found).squaredNorm() / float(side * side);
     const float contrast = found[gain_] * found[gain_] * variance_;
     return error <= noise_levels * noise_levels + unlike_share * contrast;

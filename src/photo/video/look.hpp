@@ -2,8 +2,6 @@
 // inverse compositional; affine as Shi & Tomasi 1994).
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 

@@ -25,6 +25,11 @@ constexpr double same_levels = 0.1;   // mean difference of a repeated frame
 
 using Points = std::vector<cv::Point2f>;
 
+// Pixels of a frame per pixel of the reduced frame.
+uint32_t reduction(uint32_t width, uint32_t height) {
+    return std::max(1u, (std::max(width, height) + reduced_side / 2) / reduced_side);
+}
+
 // The frame in grey, 8 bits, reduced by whole pixels.
 cv::Mat reduced_grey(const Picture &frame, int side) {
     const int depth = frame.sample == LENSPROF_SAMPLE_U16 ? CV_16U : CV_8U;
@@ -142,8 +147,8 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
         if (!corners[i].look.align(smooth, warp)) continue;
         kept.push_back(corners[i]);
         kept.back().warp = warp;
-        motion.push_back(cv::norm(to[i] - from[i]));
-        travel.push_back(cv::norm(to[i] - corners[i].born));
+        motion.push_back(cv::norm(kept.back().place() - from[i]));
+        travel.push_back(cv::norm(kept.back().place() - corners[i].born));
     }
     const double half_diagonal = 0.5 * std::hypot(grey.cols, grey.rows);
     found.kept = inner ? double(kept.size()) / double(std::max(inner, kept.size())) : 0.0;
@@ -166,15 +171,17 @@ void CornerTracker::State::find_new(const cv::Mat &grey) {
         corners.push_back({next_track++, place, even_offset(unevenness, place), Look(smooth, place), Warp(place)});
 }
 
+bool CornerTracker::can_follow(uint32_t width, uint32_t height) {
+    return std::min(width, height) / reduction(width, height) > 2 * window_px;
+}
+
 TrackedFrame CornerTracker::add(const Picture &frame) {
-    const int longer = static_cast<int>(std::max(frame.width, frame.height));
-    const int side = std::max(1, (longer + reduced_side / 2) / reduced_side);
+    const int side = static_cast<int>(reduction(frame.width, frame.height));
     const cv::Mat grey = reduced_grey(frame, side);
     TrackedFrame found;
     found.side = static_cast<uint32_t>(side);
     found.mean_level = cv::mean(grey)[0];
-    found.is_blank = found.mean_level < blank_levels || found.mean_level > 255.0 - blank_levels
-                     || grey.cols <= 2 * window_px || grey.rows <= 2 * window_px;
+    found.is_blank = found.mean_level < blank_levels || found.mean_level > 255.0 - blank_levels;
     State &s = *state_;
     if (found.is_blank) {
         s.corners.clear(), s.before.release();

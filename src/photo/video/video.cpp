@@ -221,8 +221,9 @@ void VideoReader::Decoder::refuse_transfer(const AVFrame &frame) const {
         fail(std::string("its transfer function is ") + transfer
              + ", not that of pictures for a screen; record in SDR (BT.709), or convert it with `ffmpeg -i FILE -vf "
                "zscale=transfer=bt709,format=yuv420p converted.mp4`");
-    if (frame.colorspace == AVCOL_SPC_BT2020_CL || frame.colorspace == AVCOL_SPC_ICTCP)
-        fail("its colours are coded as BT.2020 constant luminance or ICtCp; convert it to BT.709 first");
+    if (!has_known_matrix(frame.colorspace))
+        fail(std::string("its colours are coded as ") + av_color_space_name(frame.colorspace)
+             + "; convert it to BT.709 first");
 }
 
 void VideoReader::Decoder::convert(Picture &picture) {
