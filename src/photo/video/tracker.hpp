@@ -42,8 +42,8 @@ public:
     // Whether frames of this size are large enough, 31 pixels of the reduced frame.
     static bool can_follow(uint32_t width, uint32_t height);
 
-    // The next frame, which is large enough: 8 or 16 bit RGB or grey, all of one size. A frame of which few places are found again is a cut:
-    // its tracks are all new.
+    // The next frame, which is large enough: 8 or 16 bit RGB or grey, all of one size. A frame of which few places are
+    // found again is a cut: its tracks are all new.
     TrackedFrame add(const Picture &frame);
 
 private:
