@@ -233,7 +233,7 @@ void test_fields_keep_their_order(void **) {
     }
 }
 
-// Times begin at 0 where the container is another one, a cover is no second video, and odd sizes are coded.
+// Times begin at 0 where the container is another one, a cover does not become a second video, and odd sizes are coded.
 void test_other_containers(void **) {
     encoded("still", "late.ts", "-f lavfi -i sine=duration=1 -c:v libx264 -c:a aac -output_ts_offset 36000");
     must_exit(done, Words{"deflicker", in_folder("late.ts"), "-o", in_folder("late.mp4")} + known);

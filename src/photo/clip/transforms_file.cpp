@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr int deepest = 100;  // of nested lists and objects; copies are recursive
 
-// The file of a name, which may lack its extension; that without an extension if there is none.
+// The file of a name, which may lack its extension; if no such file exists, the name without an extension.
 std::string picture_named(const std::string &folder, const std::string &name) {
     const std::string path = (fs::path(folder) / name).lexically_normal().string();
     if (is_regular_file(path)) return path;

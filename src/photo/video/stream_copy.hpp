@@ -13,7 +13,7 @@ namespace lensprof {
 // Tags that hold for a video that is coded again, or all for a copy.
 void copy_tags(const AVDictionary *from, AVDictionary **to, bool is_of_copy);
 
-// Rotation and the like, which belong to the pixels' place, not to their coding.
+// Rotation, stereo and projection, which belong to the pixels' place, not to their coding.
 void copy_shape_data(const AVStream &from, AVStream &to);
 
 // Chapters that begin `later_s` earlier than those of the source.
