@@ -141,6 +141,69 @@ void test_deflicker(void **) {
     assert_true(contains(moving.err, "`lensprof calibrate`"));
 }
 
+// Nothing that is read is replaced, and nothing else without permission, unless an earlier run wrote it.
+void test_what_is_kept(void **) {
+    if (!can_read_video()) skip();
+    fs::create_directories(folder / "kept");
+    fs::create_directories(folder / "linked/images");
+    for (uint32_t i = 0; i < 12; i++) {
+        char name[32];
+        std::snprintf(name, sizeof name, "/frame_%05u.png", i + 1);
+        fs::copy_file(in_folder("moving/images/" + frame_name(i)), in_folder("kept") + name);
+        fs::create_hard_link(in_folder("kept") + name, in_folder("linked/images") + name);
+    }
+    Json listed = {
+        {"frames", {{{"file_path", "../kept/frame_00001.png"}}, {{"file_path", "../kept/frame_00002.png"}}}}};
+    fs::create_directories(folder / "list");
+    save_text(in_folder("list/transforms.json"), listed.dump());
+    save_text(in_folder("kept.txt"), text_of(in_folder("moving/times.txt")));
+    fs::create_directories(folder / "theirs");
+    save_text(in_folder("theirs/times.txt"), "theirs\n");
+    fs::copy(in_folder("moving"), in_folder("own"), fs::copy_options::recursive);
+    const auto refused = [](const Words &words, const std::string &output, const Words &named) {
+        assert_refused(usage, Words{"calibrate"} + words + Words{"--no-store", "-o", in_folder(output)}, named);
+    };
+    const Words moving = {in_folder("kept"), "--moving", "--overwrite"};
+    refused(moving + Words{"--frames", in_folder("kept") + "/"}, "none", {"is the input"});
+    refused(moving + Words{"--frames", in_folder("linked/images")}, "none", {".png: is a frame of the input"});
+    refused({in_folder("list"), "--frames", in_folder("linked"), "--overwrite"}, "none", {".png: is a frame of the"});
+    refused({in_folder("moving"), "--frames", in_folder("kept")}, "none", {"kept/frame_00001.png: exists"});
+    refused({in_folder("own"), "--overwrite"}, "own", {"own/times.txt: would be overwritten"});
+    refused(moving + Words{"--times", in_folder("theirs/times.txt")}, "theirs", {"theirs/times.txt: would be"});
+    refused({in_folder("moving")}, "theirs", {"theirs/times.txt: exists, and no earlier run wrote it", "--overwrite"});
+    const std::string clip = encoded("moving", "k.mkv", "-c:v ffv1 -pix_fmt yuv444p");
+    refused({clip, "--frames", in_folder("k.mp4")}, "k.mp4", {"k.mp4: another output has this name"});
+    refused({clip, "--frames", in_folder("k.mp4")}, "k.mp4/below", {"k.mp4: another output has this name"});
+    refused({clip, "--frames", in_folder("o/times.txt")}, "o", {"times.txt: another output has this name"});
+}
+
+// Grey frames of 16 bits are written as JPEG, and a folder may have any name; a second run replaces its own files.
+void test_deep_grey_frames(void **) {
+    if (!can_read_video()) skip();
+    const std::string name = in_folder("caf\xe9");
+    fs::create_directories(name);
+    for (uint32_t i = 0; i < 24; i++) {
+        const Picture colour = read_picture(in_folder("moving/images/" + frame_name(i)));
+        Picture grey;
+        grey.width = grey.frame_width = width, grey.height = grey.frame_height = height;
+        grey.layout = LENSPROF_LAYOUT_GREY, grey.sample = LENSPROF_SAMPLE_U16;
+        grey.row_bytes = size_t(2) * width;
+        grey.pixels.resize(grey.row_bytes * height);
+        for (size_t n = 0; n < size_t(width) * height; n++) {
+            const auto level = static_cast<uint16_t>(257 * colour.pixels[3 * n + 1]);
+            std::memcpy(&grey.pixels[2 * n], &level, sizeof level);
+        }
+        write_picture(name + "/" + frame_name(i), grey);
+    }
+    const Words words = {"calibrate", name, "--moving", "--no-store", "-o", in_folder("grey")};
+    must_exit(done, words + Words{"--frames", in_folder("grey_frames"), "--codec", "jpeg"});
+    const Picture levelled = read_picture(in_folder("grey_frames/frame_00001.jpg"));
+    assert_true(levelled.layout == LENSPROF_LAYOUT_GREY && levelled.width == width && levelled.height == height);
+    assert_true(contains(text_of(in_folder("grey/exposures.svg")), "</svg>"));
+    assert_true(fs::exists(in_folder("grey/vignette.png")));
+    must_exit(done, words);
+}
+
 void test_refusals(void **) {
     if (!can_read_video()) skip();
     write_frames("still", 12, 0.0, false);
@@ -193,8 +256,9 @@ int set_up(void **state) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folder),    cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_deflicker), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_deflicker),        cmocka_unit_test(test_refusals), cmocka_unit_test(test_what_is_kept),
+        cmocka_unit_test(test_deep_grey_frames),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -172,7 +172,8 @@ void test_video_refusals(void **) {
     refused(usage, "r.mp4", {"-o", in_folder("out"), "--codec", "vp9"}, {"--codec vp9: is for a video"});
     refused(usage, "r.mp4", {"-o", out, "--codec", "h263"}, {"h263: use png, jpeg, h264, h265, vp9 or ffv1"});
     refused(usage, "r.mp4", {"-o", out, "--codec", "ffv1:3"}, {"ffv1 is lossless"});
-    refused(usage, "r.mp4", {"-o", out, "--codec", "h264:60"}, {"qualities of 0 to 51"});
+    for (const char *codec : {"h264:60", "h264:", "h264:-1"})
+        refused(usage, "r.mp4", {"-o", out, "--codec", codec}, {codec, "h264 has qualities of 0 to 51"});
     refused(failed, "r.mp4", {"-o", in_folder("file/out.mp4")}, {"file/out.mp4: cannot write"});
     refused(usage, "r.mp4", {"-o", out, "--keep-light"}, {"--keep-light needs"});
     refused(usage, "r.mp4", {"-o", out, "--write", "xmp"}, {"--write xmp"});
@@ -213,6 +214,68 @@ void test_options_of_frames(void **) {
     assert_true(contains(text_of(in_folder("o.svg")), "</svg>"));
     must_exit(done, Words{"deflicker", source, "-o", in_folder("table"), "--write", "csv"} + known);
     assert_true(fs::exists(in_folder("table/exposures.csv")) && !fs::exists(in_folder("table/frame_00001.png")));
+}
+
+// Fields keep their order: the frames that players make of them go forward.
+void test_fields_keep_their_order(void **) {
+    const auto order = [](const std::string &file) {
+        return shown(file, "stream=field_order") + shown(file, "frame=interlaced_frame,top_field_first");
+    };
+    for (const auto &[field, word, flags] :
+         {std::tuple{"tff", "stream,tt\n", "frame,1,1"}, std::tuple{"bff", "stream,bb\n", "frame,1,0"}}) {
+        const std::string name = field, levelled = name + "_levelled.mp4";
+        encoded("still", name + ".mp4",
+                "-frames:v 6 -c:v libx264 -crf 8 -pix_fmt yuv420p -flags +ildct+ilme -x264-params " + name
+                    + "=1 -vf setfield=" + name);
+        must_exit(done, Words{"deflicker", in_folder(name + ".mp4"), "-o", in_folder(levelled)} + known);
+        assert_true(contains(order(levelled), word) && contains(order(levelled), flags));
+        assert_string_equal(order(levelled).c_str(), order(name + ".mp4").c_str());
+    }
+}
+
+// Times begin at 0 where the container is another one, a cover does not become a second video, and odd sizes are coded.
+void test_other_containers(void **) {
+    encoded("still", "late.ts", "-f lavfi -i sine=duration=1 -c:v libx264 -c:a aac -output_ts_offset 36000");
+    must_exit(done, Words{"deflicker", in_folder("late.ts"), "-o", in_folder("late.mp4")} + known);
+    assert_true(std::stod(shown("late.ts", "format=start_time").substr(7)) > 36000.0);
+    assert_close(std::stod(shown("late.mp4", "format=start_time").substr(7)), 0.0, 0.1);
+    assert_true(frames_of("late.mp4").size() == still_frames && packets("late.mp4", "a").size() > 100);
+    encoded("still", "covered.mp4",
+            "-i " + quoted("still/images/00000.png")
+                + " -map 0 -map 1 -frames:v:0 6 -c:v:0 libx264 -c:v:1 png -disposition:v:1 attached_pic");
+    must_exit(done, Words{"deflicker", in_folder("covered.mp4"), "-o", in_folder("covered.mkv")} + known);
+    assert_string_equal(printed("ffprobe -v error -show_entries stream_disposition=attached_pic -of csv=p=0 "
+                                + quoted("covered.mkv") + " | sort | tr -d '\\n'")
+                            .c_str(),
+                        "01");
+    encoded("still", "odd.mkv", "-frames:v 6 -vf crop=319:239:0:0:exact=1 -c:v ffv1 -pix_fmt yuv420p");
+    const Outcome odd = run_words(Words{"deflicker", in_folder("odd.mkv"), "-o", in_folder("odd.mp4")} + known);
+    assert_int_equal(odd.code, done);
+    assert_true(contains(odd.err,
+                         "its pixels are yuv444p, not yuv420p as those of the source, which libx264 does not "
+                         "code in frames of 319 x 239 pixels"));
+    encoded("still", "clear.mkv", "-frames:v 6 -vf format=rgba,colorchannelmixer=aa=0.5 -c:v ffv1 -pix_fmt bgra");
+    const Outcome clear = run_words(Words{"deflicker", in_folder("clear.mkv"), "-o", in_folder("opaque.mkv")} + known);
+    assert_true(clear.code == done && contains(clear.err, "opaque.mkv: its frames are opaque"));
+}
+
+// What deflicker of a clip must not replace.
+void test_tables_are_kept(void **) {
+    const std::string source = encoded("still", "t.mp4", "-c:v libx264 -crf 8");
+    const Words tables = {"deflicker", source, "--write", "copies,csv", "-o"};
+    save_text(in_folder("t_out.csv"), "mine\n1\n");
+    assert_refused(usage, tables + Words{in_folder("t_out.mp4")}, {"t_out.csv: exists, and no earlier", "--overwrite"});
+    assert_refused(usage, tables + Words{in_folder("t_out.mp4"), "--overwrite", "--to", in_folder("t_out.csv")},
+                   {"t_out.csv: would be overwritten"});
+    must_exit(done, tables + Words{in_folder("t_out.mp4"), "--overwrite"} + known);
+    fs::remove(in_folder("t_out.mp4"));
+    must_exit(done, tables + Words{in_folder("t_out.mp4")} + known);  // its own table is replaced
+    fs::create_directories(folder / "t_frames");
+    save_text(in_folder("t_frames/frame_00003.png"), "mine");
+    assert_refused(usage, {"deflicker", source, "-o", in_folder("t_frames")},
+                   {"frame_00003.png: exists", "--overwrite"});
+    must_exit(done, Words{"deflicker", source, "-o", in_folder("t_frames"), "--write", "csv"} + known);
+    assert_string_equal(text_of(in_folder("t_frames/frame_00003.png")).c_str(), "mine");
 }
 
 // A response that sRGB is not is fitted to frames of the video.
@@ -279,7 +342,7 @@ void test_transforms(void **) {
              {"transform_matrix", {{1, 0, 0, i / 7.0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}},
              {"mask_path", "masks/" + frame_name(i)}});
     }
-    content["test_filenames"] = {content["frames"][4]["file_path"], content["frames"][7]["file_path"]};
+    content["test_filenames"] = {content["frames"][4]["file_path"], "images/./" + frame_name(7), "images/00009"};
     save_text(listed, content.dump());
     const Words words = {"calibrate", data, "-o", in_folder("data_model"), "--no-store", "--frames"};
     const Outcome outcome = run_words(words + Words{in_folder("trained")});
@@ -287,7 +350,8 @@ void test_transforms(void **) {
     assert_true(contains(outcome.err, "trained: left out, because the exposure is not measured: frame_00005.png"));
     Json found = parsed(text_of(in_folder("trained/transforms.json")));
     assert_int_equal(found["frames"].size(), moving_frames - 1);
-    assert_string_equal(found["test_filenames"].dump().c_str(), "[\"images/frame_00008.png\"]");
+    assert_string_equal(found["test_filenames"].dump().c_str(),
+                        "[\"images/frame_00008.png\",\"images/frame_00010.png\"]");
     assert_string_equal(found["ply_file_path"].get<std::string>().c_str(), "../data/points.ply");
     assert_true(found["fl_x"] == content["fl_x"] && found["w"] == content["w"]);
     for (Json &frame : found["frames"]) {
@@ -309,6 +373,8 @@ void test_transforms(void **) {
         assert_refused(unreadable, {"calibrate", data, "-o", in_folder("none")}, named);
     };
     broken("{\"frames\": [", {"transforms.json: is not JSON", "repair it"});
+    broken("{\"frames\": [], \"x\": " + std::string(100000, '[') + std::string(100000, ']') + "}",
+           {"transforms.json: is nested more than 100 deep"});
     broken("[]", {"transforms.json: has no list of frames"});
     broken("{\"frames\": []}", {"transforms.json: lists no frames"});
     broken("{\"frames\": [{\"a\": 1}]}", {"frames[0] has no file_path"});
@@ -340,6 +406,8 @@ int main() {
         cmocka_unit_test(test_same_bytes),        cmocka_unit_test(test_video_refusals),
         cmocka_unit_test(test_options_of_frames), cmocka_unit_test(test_response_is_found),
         cmocka_unit_test(test_moving_video),      cmocka_unit_test(test_transforms),
+        cmocka_unit_test(test_tables_are_kept),   cmocka_unit_test(test_fields_keep_their_order),
+        cmocka_unit_test(test_other_containers),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -61,7 +61,8 @@ void declare(Command &command, CalibrateOptions &o) {
     command.flag("--one-lens", o.one_lens,
                  "treat the pictures of a panorama as from one camera and lens, regardless "
                  "of their EXIF");
-    command.flag("--overwrite", o.overwrite, "replace files in the output folder that calibrate did not write");
+    command.flag("--overwrite", o.overwrite,
+                 "replace files in the output folder that calibrate did not write, and levelled frames");
     command.file("--report", o.report,
                  "write a web page with the pictures before and after, charts and reasons: an .html file");
     command.count("--threads", o.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");

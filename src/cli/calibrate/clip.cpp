@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/calibrate/clip_conflicts.hpp"
 #include "cli/calibrate/clip_files.hpp"
 #include "cli/calibrate/levelled_clip.hpp"
 #include "cli/program/exit_code.hpp"
@@ -153,6 +154,58 @@ void print_clip(const ClipFit &fit, const ClipTracks &clip, const Tally &tally, 
     for (const std::string &name : written) out << "written   " << name << "\n";
 }
 
+// The file of exposure times: the given one, or that of a folder with images/; empty: none.
+std::string times_file(const ClipCommand &o) {
+    if (!o.times.empty() || !is_frame_folder(o.input)) return o.times;
+    const std::string times = (std::filesystem::path(o.input) / "times.txt").string();
+    return path_exists(times) ? times : std::string();
+}
+
+ClipOptions fit_options(const std::string &times, const ClipTracks &clip) {
+    ClipOptions options;
+    if (!times.empty()) options.known_ev = read_clip_times(times, clip);
+    if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
+        options.known_ev.clear();
+    return options;
+}
+
+void check_clip(const ClipTracks &clip) {
+    if (clip.frames.size() < 2)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, clip.path + ": has only one frame; give a clip of a moving camera",
+                      LENSPROF_REASON_FEW_PAIRS);
+    if (clip.is_static()) refuse_static(clip);
+}
+
+// Stores the profile after all files, if the clip states a camera.
+Outcome store_clip(const ClipCommand &o, ClipFit &fit, const lensprof_profile_key &key, Streams &streams) {
+    StoreOptions store = o.store;
+    if (!store.no_store && !*key.camera_model) {
+        store.no_store = true;
+        note(streams, o.input + ": states no camera, so that no profile is stored; store pcalib.txt and vignette.png "
+                                "with `lensprof profile import` and the name of the camera");
+    }
+    if (!store.no_store) store_result(fit.report, key, store, {"clip radiance", o.input, nullptr});
+    return outcome_of(fit.report, store, o.input, true);
+}
+
+// Writes all files and levelled frames; returns their names.
+std::vector<std::string> write_clip(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip,
+                                    const std::vector<double> &known_ev, const FrameSource &source,
+                                    ClipOutput *levelled, Events &events) {
+    OutputFiles outputs;
+    std::vector<std::string> written;
+    make_folder(o.output);
+    if (fit.best.corrects()) written = write_model(fit, clip, o.output, outputs);
+    const auto tables = write_exposures(clip, offset_of_times(clip, known_ev), o.output, outputs);
+    outputs.commit();
+    written.insert(written.end(), tables.begin(), tables.end());
+    if (levelled && fit.best.corrects()) {
+        write_levelled(o, fit, clip, source, *levelled, events);
+        written.push_back(o.levelled);
+    }
+    return written;
+}
+
 }  // namespace
 
 bool is_frame_folder(const std::string &path) {
@@ -165,46 +218,24 @@ bool is_frame_folder(const std::string &path) {
 int calibrate_clip(const ClipCommand &o, Streams &streams) {
     Progress events(streams, o.progress);
     check_output_folder(o.output);
-    const auto levelled = open_levelled(o, events);
     const bool is_of_pictures = is_folder(o.input);
-    const double rate = is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate;
-    const auto source = open_frames(o.input, rate, events);
+    const auto source =
+        open_frames(o.input, is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate, events);
+    const std::string times = times_file(o);
+    std::vector<std::string> inputs = source->files();
+    if (!times.empty()) inputs.push_back(times);
+    check_conflicts(o, inputs);
+    const auto levelled = open_levelled(o, inputs, events);
     ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events);
-    if (clip.frames.size() < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, o.input + ": has only one frame; give a clip of a moving camera",
-                      LENSPROF_REASON_FEW_PAIRS);
-    if (clip.is_static()) refuse_static(clip);
-    ClipOptions options;
-    std::string times = o.times;
-    if (times.empty() && is_frame_folder(o.input)) times = (std::filesystem::path(o.input) / "times.txt").string();
-    if (!path_exists(times) && o.times.empty()) times.clear();
-    if (!times.empty()) options.known_ev = read_clip_times(times, clip);
-    if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
-        options.known_ev.clear();
+    check_clip(clip);
+    const ClipOptions options = fit_options(times, clip);
     const lensprof_profile_key key = clip_key(clip.info);
     ClipFit fit = fit_clip(options, key, clip, events);
     check_wanted(o, clip);
     events.clear();
     const Tally tally(clip);
-    StoreOptions store = o.store;
-    if (!store.no_store && !*key.camera_model) {
-        store.no_store = true;
-        note(streams, o.input + ": states no camera, so that no profile is stored; store pcalib.txt and vignette.png "
-                                "with `lensprof profile import` and the name of the camera");
-    }
-    if (!store.no_store) store_result(fit.report, key, store, {"clip radiance", o.input, nullptr});
-    const Outcome outcome = outcome_of(fit.report, store, o.input, true);
-    OutputFiles outputs;
-    std::vector<std::string> written;
-    make_folder(o.output);
-    if (fit.best.corrects()) written = write_model(fit, clip, o.output, outputs);
-    const auto tables = write_exposures(clip, offset_of_times(clip, options.known_ev), o.output, outputs);
-    outputs.commit();
-    written.insert(written.end(), tables.begin(), tables.end());
-    if (levelled && fit.best.corrects()) {
-        write_levelled(o, fit, clip, rate, *levelled, events);
-        written.push_back(o.levelled);
-    }
+    const auto written = write_clip(o, fit, clip, options.known_ev, *source, levelled.get(), events);
+    const Outcome outcome = store_clip(o, fit, key, streams);
     if (o.json) {
         Json json = build_json(fit.report);
         json["clip"] = clip_json(fit, clip, tally, written, levelled.get());

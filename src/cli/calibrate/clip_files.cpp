@@ -8,6 +8,7 @@
 #include "cli/profiles/foreign_file.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/clip/frame_source.hpp"
@@ -15,6 +16,10 @@
 
 namespace lensprof {
 namespace {
+
+constexpr char response_name[] = "pcalib.txt", falloff_name[] = "vignette.png", times_name[] = "times.txt",
+               table_name[] = "exposures.csv", list_name[] = "exposures.json", chart_name[] = "exposures.svg";
+constexpr char table_header[] = "frame,seconds,state,segment,ev,ev_sigma,red,blue,keyframe,repeats,points,mean_level\n";
 
 std::string path_in(const std::string &folder, const std::string &name) {
     return (std::filesystem::path(folder) / name).string();
@@ -48,7 +53,7 @@ std::string times_text(const ClipTracks &clip, double offset_ev) {
 }
 
 std::string exposure_table(const ClipTracks &clip) {
-    std::string text = "frame,seconds,state,segment,ev,ev_sigma,red,blue,keyframe,repeats,points,mean_level\n";
+    std::string text = table_header;
     for (size_t i = 0; i < clip.frames.size(); i++) {
         const ClipFrame &frame = clip.frames[i];
         text += format("%zu,%.6f,%s,%u,", i + 1, frame.seconds, clip_state_name(frame.state), frame.segment);
@@ -78,6 +83,18 @@ void check_time_stamps(const std::string &path, const std::vector<TimesLine> &li
 }
 
 }  // namespace
+
+std::vector<std::string> clip_files(const std::string &folder) {
+    std::vector<std::string> files;
+    for (const char *name : {response_name, falloff_name, times_name, table_name, list_name, chart_name})
+        files.push_back(path_in(folder, name));
+    return files;
+}
+
+bool has_clip_files(const std::string &folder) {
+    const std::string table = path_in(folder, table_name);
+    return is_regular_file(table) && read_head(table, sizeof table_header - 1) == table_header;
+}
 
 Json clip_frames_json(const ClipTracks &clip) {
     Json frames = Json::array();
@@ -127,21 +144,21 @@ double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
                                      OutputFiles &outputs) {
     const auto profile = fit.profile();
-    const std::string response = path_in(folder, "pcalib.txt"), falloff = path_in(folder, "vignette.png");
+    const std::string response = path_in(folder, response_name), falloff = path_in(folder, falloff_name);
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = LENSPROF_FORMAT_PCALIB;
     outputs.add(response, exported(response, {profile.get()}, options));
     ForeignOptions map;
     map.width = clip.info.width, map.height = clip.info.height;
-    write_foreign(format_to_write(falloff, ""), falloff, map, {profile.get()}, {});
+    write_foreign(format_to_write(falloff, ""), outputs.temporary_for(falloff), map, {profile.get()}, {});
     return {response, falloff};
 }
 
 std::vector<std::string> write_exposures(const ClipTracks &clip, double offset_ev, const std::string &folder,
                                          OutputFiles &outputs) {
-    const std::string times = path_in(folder, "times.txt"), table = path_in(folder, "exposures.csv"),
-                      list = path_in(folder, "exposures.json"), chart = path_in(folder, "exposures.svg");
+    const std::string times = path_in(folder, times_name), table = path_in(folder, table_name),
+                      list = path_in(folder, list_name), chart = path_in(folder, chart_name);
     outputs.add(times, times_text(clip, offset_ev));
     outputs.add(table, exposure_table(clip));
     outputs.add(list, Json{{"schema", json_schema}, {"frames", clip_frames_json(clip)}}.dump(1) + "\n");

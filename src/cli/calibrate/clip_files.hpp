@@ -10,6 +10,12 @@
 
 namespace lensprof {
 
+// The names of the files that it writes into the folder.
+std::vector<std::string> clip_files(const std::string &folder);
+
+// Whether an earlier run wrote the files of the folder, by the first line of its exposures.csv.
+bool has_clip_files(const std::string &folder);
+
 // Exposure times of frames, from a file of lines "name time_stamp exposure" as of the TUM mono dataset: EV per frame,
 // NaN where the line states none. There is a line for each frame of the clip or, of a part of the frames, for each of
 // those. Failure (unreadable) with the line.

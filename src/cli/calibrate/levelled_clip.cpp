@@ -51,10 +51,10 @@ bool has_groups(const ClipTracks &clip) {
 // Decodes the clip again and writes its frames at the wanted exposure of their segment without falloff. Frames that are
 // not measured are left out of a folder, and unchanged in a video. Returns their numbers, from 0.
 std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks &clip,
-                                            const std::vector<lensprof_exposure> &wanted, double frames_per_s,
+                                            const std::vector<lensprof_exposure> &wanted, const FrameSource &frames,
                                             ClipOutput &output, Events &events) {
     const auto profile = fit.profile();
-    const auto source = open_frames(clip.path, frames_per_s, events);
+    const auto source = frames.again();
     const size_t count = clip.frames.size();
     std::vector<uint32_t> unmeasured;
     size_t done = 0;
@@ -68,10 +68,7 @@ std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks
         if (!is_measured && !output.is_video()) continue;
         source->read(frame.picture);
         if (is_measured) {
-            lensprof_exposure change = measured.exposure;
-            change.ev -= wanted[measured.segment].ev;
-            for (size_t c = 0; c < 3; c++) change.white_balance[c] /= wanted[measured.segment].white_balance[c];
-            output.write_levelled(index, count, *profile, change, frame);
+            output.write_levelled(index, count, *profile, measured.exposure, wanted[measured.segment], frame);
         } else {
             output.write_unchanged(index, count, frame);
         }
@@ -83,8 +80,8 @@ std::vector<uint32_t> write_levelled_frames(const ClipFit &fit, const ClipTracks
 }
 
 // The poses of the input for the levelled frames.
-void write_transforms(const ClipCommand &o, const ClipTracks &clip, const std::vector<lensprof_exposure> &wanted,
-                      const ClipOutput &output) {
+void write_transforms(const ClipCommand &o, const TransformsFile &transforms, const ClipTracks &clip,
+                      const std::vector<lensprof_exposure> &wanted, const ClipOutput &output) {
     std::vector<LevelledPose> poses;
     for (size_t i = 0; i < clip.frames.size(); i++) {
         const ClipFrame &frame = clip.frames[i];
@@ -93,14 +90,14 @@ void write_transforms(const ClipCommand &o, const ClipTracks &clip, const std::v
         else
             poses.emplace_back();
     }
-    const std::string path = (std::filesystem::path(o.levelled) / transforms_name).string(),
-                      text = levelled_transforms(read_transforms(o.input), o.levelled, poses);
+    const std::string path = transforms_path(o.levelled), text = levelled_transforms(transforms, o.levelled, poses);
     write_file(path, text.data(), text.size());
 }
 
 }  // namespace
 
-std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) {
+std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, const std::vector<std::string> &inputs,
+                                          Events &events) {
     if (o.levelled.empty()) {
         if (!o.to.empty() || !o.codec.name.empty())
             throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(o.to.empty() ? "--codec" : "--to")
@@ -109,17 +106,15 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) 
     }
     if (!o.to.empty() && o.to != "mean" && o.to != "first" && frame_number(o.to) == 0)
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--to " + o.to + ": is neither mean, first nor the number of a frame");
-    if (is_same_file(o.input, o.levelled))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": is the input; give the output another name");
     if (has_transforms(o.input) && has_transforms(o.levelled) && !o.overwrite)
         throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": has a " + transforms_name
                                                    + "; give another name, or replace it with --overwrite");
     // The frames of a transforms.json are in images/, as nerfstudio keeps them.
-    const std::string place = has_transforms(o.input) && !is_video_name(o.levelled)
+    const std::string place = has_transforms(o.input) && !is_video_output(o.levelled)
                                   ? (std::filesystem::path(o.levelled) / "images").string()
                                   : o.levelled;
     if (is_in_new_folder(o.levelled, o.output)) make_folder(o.output);
-    auto levelled = std::make_unique<ClipOutput>(o.input, place, o.codec, o.overwrite, events);
+    auto levelled = std::make_unique<ClipOutput>(o.input, place, inputs, o.codec, o.overwrite, events);
     if (levelled->is_video() && o.frames_per_s > 0.0)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       o.levelled + ": a video has all frames of its source; omit --fps, or give the name of a folder");
@@ -128,11 +123,11 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, Events &events) 
 
 void check_wanted(const ClipCommand &o, const ClipTracks &clip) { wanted_exposures(o.to, clip); }
 
-void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, double rate, ClipOutput &output,
-                    Events &events) {
+void write_levelled(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, const FrameSource &source,
+                    ClipOutput &output, Events &events) {
     const auto wanted = wanted_exposures(o.to, clip);
-    const auto unmeasured = write_levelled_frames(fit, clip, wanted, rate, output, events);
-    if (has_transforms(o.input)) write_transforms(o, clip, wanted, output);
+    const auto unmeasured = write_levelled_frames(fit, clip, wanted, source, output, events);
+    if (const TransformsFile *transforms = source.transforms()) write_transforms(o, *transforms, clip, wanted, output);
     if (has_groups(clip) && frame_number(o.to) > 0)
         events.note(o.levelled, "scenes without the frame " + o.to + " have their mean exposure");
     if (unmeasured.empty()) return;

@@ -1,8 +1,10 @@
 #include "cli/correct/clip_output.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -26,8 +28,17 @@ void read_codec(const std::string &word, ClipCodec &codec) {
     if (colon == word.size()) return;
     if (codec.name == "png" || codec.name == "ffv1")
         throw std::invalid_argument(word + ": " + codec.name + " is lossless and has no quality; omit it");
-    const std::string quality = word.substr(colon + 1);
-    codec.quality = static_cast<int>(count_of(quality, codec.name == "jpeg" ? 1 : 0, codec.name == "jpeg" ? 100 : 63));
+    const bool is_jpeg = codec.name == "jpeg";
+    const int low = is_jpeg ? 1 : 0, high = is_jpeg ? 100 : worst_quality(codec.name);
+    try {
+        codec.quality =
+            static_cast<int>(count_of(word.substr(colon + 1), static_cast<uint32_t>(low), static_cast<uint32_t>(high)));
+    } catch (const std::invalid_argument &) {
+        throw std::invalid_argument(
+            word + ": " + codec.name
+            + format(" has qualities of %d to %d, where %s is better; give one, or omit the colon", low, high,
+                     is_jpeg ? "higher" : "lower"));
+    }
 }
 
 bool is_picture_codec(const ClipCodec &codec) { return codec.name == "png" || codec.name == "jpeg"; }
@@ -36,7 +47,7 @@ bool is_picture_codec(const ClipCodec &codec) { return codec.name == "png" || co
 Picture with_8_bits(const Picture &deep) {
     Picture picture;
     picture.width = picture.frame_width = deep.width, picture.height = picture.frame_height = deep.height;
-    picture.row_bytes = deep.row_bytes / 2;
+    picture.layout = deep.layout, picture.row_bytes = deep.row_bytes / 2;
     picture.pixels.resize(deep.pixels.size() / 2);
     for (size_t n = 0; n < picture.pixels.size(); n++)
         picture.pixels[n] =
@@ -63,10 +74,12 @@ size_t frame_number(const std::string &word) {
     return error == std::errc() && end == digits.data() + digits.size() ? number : 0;
 }
 
-ClipOutput::ClipOutput(const std::string &source, const std::string &path, const ClipCodec &codec, bool overwrite,
-                       Events &events)
+bool is_video_output(const std::string &path) { return !is_folder(path) && is_video_name(path); }
+
+ClipOutput::ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
+                       const ClipCodec &codec, bool overwrite, Events &events)
     : path_(path), suffix_(codec.name == "jpeg" ? ".jpg" : ".png"), quality_(codec.quality) {
-    const bool is_video = !is_folder(path) && is_video_name(path);
+    const bool is_video = is_video_output(path);
     if (is_same_file(source, path))
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": is the input; give the output another name");
     if (!codec.name.empty() && is_video == is_picture_codec(codec))
@@ -79,21 +92,46 @@ ClipOutput::ClipOutput(const std::string &source, const std::string &path, const
                                     "give a name with .mp4 or .mkv"));
     if (!is_video) {
         check_output_folder(path);
+        check_frames(inputs, overwrite);
         return;
     }
     if (is_folder(source))
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": a video is written of a video, but " + source
                                                    + " is a folder; give the name of a folder");
+    check_not_reserved(path, "output", inputs);
     if (path_exists(path) && !overwrite)
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": exists; give another name, or replace it with --overwrite");
     writer_ = std::make_unique<VideoWriter>(source, path, codec, events);
     suffix_.clear();
 }
 
+// Of the frames that the folder has already.
+void ClipOutput::check_frames(const std::vector<std::string> &inputs, bool overwrite) const {
+    std::set<std::string> read, older;
+    for (const std::string &input : inputs) read.insert(file_identity(input));
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const size_t number = frame_number(name);
+        if (number == 0 || name != name_of(number - 1)) continue;
+        older.insert(entry->path().string());
+        if (read.count(file_identity(entry->path().string())))
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          entry->path().string() + ": is a frame of the input; give the output another name");
+    }
+    if (!older.empty() && !overwrite)
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            *older.begin() + ": exists; give the folder another name, or replace its frames with --overwrite");
+}
+
 std::string ClipOutput::name_of(size_t index) const { return format("%s%05zu", frame_prefix, index + 1) + suffix_; }
 
 void ClipOutput::write_levelled(size_t index, size_t count, const lensprof_profile &model,
-                                const lensprof_exposure &exposure, VideoFrame &frame) {
+                                const lensprof_exposure &measured, const lensprof_exposure &wanted, VideoFrame &frame) {
+    lensprof_exposure exposure = measured;  // that which is removed
+    exposure.ev -= wanted.ev;
+    for (size_t c = 0; c < 3; c++) exposure.white_balance[c] /= wanted.white_balance[c];
     lensprof_error error{};
     lensprof_target pixels = frame.picture.target();
     check(lensprof_correct(&model, &exposure, &pixels, &error), name_of(index), &error);

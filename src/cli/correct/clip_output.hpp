@@ -21,19 +21,23 @@ void declare_codec(Command &command, ClipCodec &codec);
 // The number of a frame that is named "12", "frame_00012" or "frame_00012.png", from 1; 0: none.
 size_t frame_number(const std::string &word);
 
+// Whether an output of this name is a video, not a folder. Failure as of is_video_name.
+bool is_video_output(const std::string &path);
+
 class ClipOutput {
 public:
-    // Failure before anything is measured: of VideoWriter, and (usage) for an output that is the source, or a video
-    // that exists without `overwrite`; (failed) for a folder that cannot be written.
-    ClipOutput(const std::string &source, const std::string &path, const ClipCodec &codec, bool overwrite,
-               Events &events);
+    // Failure before anything is measured: of VideoWriter, and (usage) for an output that would replace the source or
+    // one of `inputs`, or, without `overwrite`, a video or frames that exist; (failed) for a folder that cannot be
+    // written.
+    ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
+               const ClipCodec &codec, bool overwrite, Events &events);
 
     bool is_video() const { return writer_ != nullptr; }
     std::string name_of(size_t index) const;  // "frame_00001.png"; of a video without the suffix
 
-    // Levels the frame in place and writes it; `exposure`: that which is removed.
-    void write_levelled(size_t index, size_t count, const lensprof_profile &model, const lensprof_exposure &exposure,
-                        VideoFrame &frame);
+    // Changes the frame in place from the measured to the wanted exposure, without falloff, and writes it.
+    void write_levelled(size_t index, size_t count, const lensprof_profile &model, const lensprof_exposure &measured,
+                        const lensprof_exposure &wanted, VideoFrame &frame);
     void write_unchanged(size_t index, size_t count, VideoFrame &frame);
     void finish();
 
@@ -42,6 +46,8 @@ public:
     const std::string &path() const { return path_; }
 
 private:
+    void check_frames(const std::vector<std::string> &inputs, bool overwrite) const;
+
     std::string path_, suffix_;
     int quality_;
     std::unique_ptr<VideoWriter> writer_;

@@ -263,12 +263,24 @@ void write_copies(const DeflickerOptions &o, std::vector<Correction> &jobs, Prog
     if (!corrected.failed.empty()) throw Failure(corrected.failed[0].failure);
 }
 
-// exposures.csv in the folder, or NAME.csv next to a video.
-std::string table_name(const DeflickerOptions &o, bool is_of_video) {
-    const std::filesystem::path output(o.folder());
-    if (is_of_video) return std::filesystem::path(output).replace_extension(".csv").string();
-    make_folder(o.folder());
-    return (output / "exposures.csv").string();
+// exposures.csv in the folder, or NAME.csv next to a video; empty: not written.
+std::string table_name(const DeflickerOptions &o, bool is_to_video) {
+    if (!o.writes(Write::csv) && (!o.is_clip() || !o.write.empty() || is_to_video)) return {};
+    std::filesystem::path output(o.folder());
+    return (is_to_video ? output.replace_extension(".csv") : output / "exposures.csv").string();
+}
+
+// Failure before anything is measured, for a table that would replace a file which no earlier run wrote.
+void check_table(const DeflickerOptions &o, bool is_to_video, std::vector<std::string> reserved) {
+    const std::string table = table_name(o, is_to_video);
+    if (table.empty()) return;
+    if (lowercase_extension(o.to) == "csv") reserved.push_back(o.to);
+    reserved.push_back(o.chart);
+    check_not_reserved(table, "output", reserved);
+    if (path_exists(table) && !o.kind.overwrite && !is_offset_table(table))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, table
+                                                   + ": exists, and no earlier run wrote it; give the output another "
+                                                     "name, or replace it with --overwrite");
 }
 
 void write_exposure_files(const DeflickerOptions &o, const Levels &levels, bool is_to_video,
@@ -279,8 +291,9 @@ void write_exposure_files(const DeflickerOptions &o, const Levels &levels, bool 
         const auto files = write_offsets(levels.frames, format, o.output);
         if (!files.empty()) written.push_back(files[0] + (files.size() > 1 ? " and further" : ""));
     }
-    if (o.writes(Write::csv) || (o.is_clip() && o.write.empty() && !is_to_video)) {
-        const std::string name = table_name(o, is_to_video), text = offset_table(levels.frames);
+    if (const std::string name = table_name(o, is_to_video); !name.empty()) {
+        const std::string text = offset_table(levels.frames);
+        if (!is_to_video) make_folder(o.folder());
         write_file(name, text.data(), text.size());
         written.push_back(name);
     }
@@ -366,7 +379,8 @@ int run_clip(const DeflickerOptions &o, Streams &streams) {
     const std::string &clip = o.files[0];
     if (!o.chart.empty()) check_not_reserved(o.chart, "chart", {clip, o.folder()});
     if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
-    ClipOutput output(clip, o.folder(), o.codec, o.kind.overwrite, progress);
+    check_table(o, is_video_output(o.folder()), {clip});
+    ClipOutput output(clip, o.folder(), {clip, o.to}, o.codec, o.kind.overwrite || !o.writes(Write::copies), progress);
     Levels levels;
     levels.measured = measure_clip(clip, o.measure, output, levels.sequence, progress);
     std::vector<double> curve;
@@ -389,7 +403,7 @@ int run_pictures(const DeflickerOptions &o, Streams &streams) {
     if (!o.codec.name.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--codec: is for a video; copies of pictures keep their format, so omit the option");
-    if (!is_folder(o.folder()) && is_video_name(o.folder()))
+    if (is_video_output(o.folder()))
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       o.folder() + ": a video is written of a video; give the name of a folder for copies of pictures");
     Progress progress(streams, o.progress);
@@ -400,6 +414,7 @@ int run_pictures(const DeflickerOptions &o, Streams &streams) {
     std::vector<std::string> inputs;
     for (const Frame &frame : levels.sequence.frames) inputs.push_back(frame.file);
     check_region(measure, levels.sequence.frames[0]);
+    check_table(o, false, inputs);
     if (!o.chart.empty()) check_not_reserved(o.chart, "chart", inputs);
     if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
     if (is_folder(o.folder())) remove_stale_temporaries(o.folder());

@@ -138,10 +138,8 @@ void write_levelled_clip(const std::string &clip, const std::vector<LevelledFram
     for (uint32_t i = 0; i < frames.size() && reader.next(frame); i++) {
         stop_if_cancelled();
         reader.read(frame.picture);
-        lensprof_exposure change = frames[i].measured.exposure;
-        change.ev -= frames[i].wanted.ev;
-        for (size_t c = 0; c < 3; c++) change.white_balance[c] /= frames[i].wanted.white_balance[c];
-        output.write_levelled(i, frames.size(), *frame_model(measured, i), change, frame);
+        output.write_levelled(i, frames.size(), *frame_model(measured, i), frames[i].measured.exposure,
+                              frames[i].wanted, frame);
         events.update_items("writing", i, static_cast<uint32_t>(frames.size()));
     }
     events.clear();

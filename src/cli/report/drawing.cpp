@@ -10,6 +10,7 @@
 #include <cairo-svg.h>
 
 #include "photo/base/failure.hpp"
+#include "photo/base/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -104,8 +105,9 @@ double text_width(cairo_t *cr, const std::string &text) {
 }
 
 void draw_text(cairo_t *cr, double x, double y, const std::string &text, double anchor) {
-    cairo_move_to(cr, x - anchor * text_width(cr, text), y);
-    cairo_show_text(cr, text.c_str());
+    const std::string valid = valid_line(text);
+    cairo_move_to(cr, x - anchor * text_width(cr, valid), y);
+    cairo_show_text(cr, valid.c_str());
 }
 
 void draw_rotated_text(cairo_t *cr, double x, double y, const std::string &text) {

@@ -1,6 +1,7 @@
 // Levels of items of which ratios are known: a sequence of frames, compared over several distances.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -212,6 +212,11 @@ void OutputFiles::add(const std::string &path, const std::string &text) {
     files_.back()->write(text.data(), text.size());
 }
 
+const std::string &OutputFiles::temporary_for(const std::string &path) {
+    files_.push_back(std::make_unique<OutputFile>(path));
+    return files_.back()->temporary();
+}
+
 void OutputFiles::commit() {
     for (auto &file : files_) file->commit();
 }

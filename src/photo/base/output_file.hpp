@@ -66,6 +66,7 @@ private:
 class OutputFiles {
 public:
     void add(const std::string &path, const std::string &text);
+    const std::string &temporary_for(const std::string &path);  // for a file that something else writes
     void commit();
 
 private:

@@ -60,4 +60,14 @@ std::string one_line(const std::string &text) {
     return line;
 }
 
+std::string valid_line(const std::string &text) {
+    std::string valid = one_line(text);
+    for (size_t i = 0; i < valid.size();) {
+        const size_t length = utf8_length(valid, i);
+        if (!length) valid[i] = '?';
+        i += std::max<size_t>(length, 1);
+    }
+    return valid;
+}
+
 }  // namespace lensprof

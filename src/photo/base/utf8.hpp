@@ -17,4 +17,7 @@ size_t utf8_cut(const std::string &text, size_t bytes);
 // text of more than 2000 bytes is shortened to its start and end.
 std::string one_line(const std::string &text);
 
+// The same as valid UTF-8, for cairo: invalid bytes become question marks.
+std::string valid_line(const std::string &text);
+
 }  // namespace lensprof

@@ -5,7 +5,6 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
-#include "photo/clip/transforms_file.hpp"
 #include "photo/scene/exposure_times.hpp"
 
 namespace lensprof {
@@ -19,6 +18,8 @@ public:
     std::string name_of(uint64_t number) const override {
         return path_ + format(": frame %llu", static_cast<unsigned long long>(number + 1));
     }
+    std::vector<std::string> files() const override { return {path_}; }
+    std::unique_ptr<FrameSource> again() const override { return std::make_unique<VideoFrames>(path_); }
     bool next(VideoFrame &frame) override { return reader_.next(frame); }
     void read(Picture &picture) override { reader_.read(picture); }
 
@@ -29,10 +30,12 @@ private:
 
 class FolderFrames : public FrameSource {
 public:
-    FolderFrames(const std::string &folder, double frames_per_s, Events &events)
-        : files_(files_in(folder, events)), frame_s_(1.0 / frames_per_s) {
+    FolderFrames(const std::string &folder, double frames_per_s, Events &events) : frame_s_(1.0 / frames_per_s) {
+        if (has_transforms(folder)) transforms_ = std::make_shared<TransformsFile>(read_transforms(folder));
+        files_ = transforms_ ? transforms_->files : find_sweep(folder, events).files;
         if (files_.empty()) throw Failure(LENSPROF_ERROR_READ, folder + ": has no pictures; give a folder with frames");
         const Picture header = read_header(files_[0]);
+        if (transforms_) check_stated_size(*transforms_, header.width, header.height);
         const PictureMetadata metadata = read_metadata(files_[0]);
         info_.width = header.width, info_.height = header.height, info_.sample = header.sample;
         info_.orientation = metadata.orientation, info_.codec = "pictures";
@@ -42,6 +45,17 @@ public:
 
     const VideoInfo &info() const override { return info_; }
     std::string name_of(uint64_t number) const override { return files_.at(number); }
+    const TransformsFile *transforms() const override { return transforms_.get(); }
+    std::vector<std::string> files() const override {
+        std::vector<std::string> files = files_;
+        if (transforms_) files.push_back(transforms_path(transforms_->folder));
+        return files;
+    }
+    std::unique_ptr<FrameSource> again() const override {
+        auto source = std::make_unique<FolderFrames>(*this);
+        source->next_ = 0;
+        return source;
+    }
 
     bool next(VideoFrame &frame) override {
         if (next_ == files_.size()) return false;
@@ -65,14 +79,7 @@ public:
     }
 
 private:
-    static std::vector<std::string> files_in(const std::string &folder, Events &events) {
-        if (!has_transforms(folder)) return find_sweep(folder, events).files;
-        const TransformsFile transforms = read_transforms(folder);
-        const Picture header = read_header(transforms.files[0]);
-        check_stated_size(transforms, header.width, header.height);
-        return transforms.files;
-    }
-
+    std::shared_ptr<const TransformsFile> transforms_;  // or null
     std::vector<std::string> files_;
     double frame_s_;
     size_t next_ = 0;

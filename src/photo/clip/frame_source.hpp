@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "photo/base/events.hpp"
+#include "photo/clip/transforms_file.hpp"
 #include "photo/video/video.hpp"
 
 namespace lensprof {
@@ -15,6 +17,11 @@ public:
 
     virtual const VideoInfo &info() const = 0;
     virtual std::string name_of(uint64_t number) const = 0;  // for messages, of a frame that was read
+    virtual std::vector<std::string> files() const = 0;      // all that are read
+    virtual const TransformsFile *transforms() const { return nullptr; }
+
+    // The same frames from their beginning.
+    virtual std::unique_ptr<FrameSource> again() const = 0;
 
     // As in VideoReader.
     virtual bool next(VideoFrame &frame) = 0;

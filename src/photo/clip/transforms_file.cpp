@@ -14,19 +14,19 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string transforms_path(const std::string &folder) { return (fs::path(folder) / transforms_name).string(); }
-
 [[noreturn]] void fail_transforms(const std::string &folder, const std::string &what) {
     throw Failure(LENSPROF_ERROR_READ, transforms_path(folder) + ": " + what);
 }
 
-std::string picture_named(const std::string &folder, const std::string &name, size_t index) {
+constexpr int deepest = 100;  // of nested lists and objects; copies are recursive
+
+// The file of a name, which may lack its extension; if no such file exists, the name without an extension.
+std::string picture_named(const std::string &folder, const std::string &name) {
     const std::string path = (fs::path(folder) / name).lexically_normal().string();
     if (is_regular_file(path)) return path;
     for (const char *extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG"})
         if (is_regular_file(path + extension)) return path + extension;
-    fail_transforms(folder,
-                    format("frames[%zu]: ", index) + path + " does not exist; copy it there, or remove the frame");
+    return path;
 }
 
 // A name relative to one folder as one relative to another.
@@ -41,12 +41,18 @@ void move_name(OrderedJson &object, const char *key, const std::string &from, co
 
 }  // namespace
 
+std::string transforms_path(const std::string &folder) { return (fs::path(folder) / transforms_name).string(); }
+
 bool has_transforms(const std::string &folder) { return is_regular_file(transforms_path(folder)); }
 
 TransformsFile read_transforms(const std::string &folder) {
     TransformsFile transforms{folder, {}, {}};
+    const auto check_depth = [&](int depth, OrderedJson::parse_event_t, const OrderedJson &) {
+        if (depth > deepest) fail_transforms(folder, format("is nested more than %d deep; repair it", deepest));
+        return true;
+    };
     try {
-        transforms.content = OrderedJson::parse(read_text(transforms_path(folder), max_text_bytes));
+        transforms.content = OrderedJson::parse(read_text(transforms_path(folder), max_text_bytes), check_depth);
     } catch (const OrderedJson::exception &error) {
         fail_transforms(folder, std::string("is not JSON: ") + error.what() + "; repair it");
     }
@@ -59,7 +65,11 @@ TransformsFile read_transforms(const std::string &folder) {
         const size_t index = transforms.files.size();
         if (!frame.is_object() || !frame.contains("file_path") || !frame["file_path"].is_string())
             fail_transforms(folder, format("frames[%zu] has no file_path; add the name of its picture", index));
-        transforms.files.push_back(picture_named(folder, frame["file_path"].get<std::string>(), index));
+        const std::string file = picture_named(folder, frame["file_path"].get<std::string>());
+        if (!is_regular_file(file))
+            fail_transforms(
+                folder, format("frames[%zu]: ", index) + file + " does not exist; copy it there, or remove the frame");
+        transforms.files.push_back(file);
     }
     if (transforms.files.empty()) fail_transforms(folder, "lists no frames; give a file with frames");
     return transforms;
@@ -80,10 +90,10 @@ void check_stated_size(const TransformsFile &transforms, uint32_t width, uint32_
 std::string levelled_transforms(const TransformsFile &transforms, const std::string &folder,
                                 const std::vector<LevelledPose> &frames) {
     OrderedJson content = transforms.content, kept = OrderedJson::array();
-    std::map<std::string, std::string> new_names;
+    std::map<std::string, std::string> new_names;  // of the source's files
     for (size_t i = 0; i < frames.size(); i++) {
         OrderedJson frame = content["frames"][i];
-        new_names[frame["file_path"].get<std::string>()] = frames[i].file;
+        new_names[transforms.files[i]] = frames[i].file;
         if (frames[i].file.empty()) continue;
         frame["file_path"] = frames[i].file;
         frame["exposure_ev"] = frames[i].removed_ev;
@@ -96,7 +106,9 @@ std::string levelled_transforms(const TransformsFile &transforms, const std::str
         if (!content.contains(key) || !content[key].is_array()) continue;
         OrderedJson names = OrderedJson::array();
         for (const OrderedJson &name : content[key]) {
-            const auto found = name.is_string() ? new_names.find(name.get<std::string>()) : new_names.end();
+            const auto found = name.is_string()
+                                   ? new_names.find(picture_named(transforms.folder, name.get<std::string>()))
+                                   : new_names.end();
             if (found == new_names.end())
                 names.push_back(name);
             else if (!found->second.empty())
@@ -104,7 +116,7 @@ std::string levelled_transforms(const TransformsFile &transforms, const std::str
         }
         content[key] = std::move(names);
     }
-    return content.dump(2) + "\n";
+    return content.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";  // folders have any name
 }
 
 }  // namespace lensprof

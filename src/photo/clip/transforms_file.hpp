@@ -22,11 +22,14 @@ struct LevelledPose {
     double removed_ev = 0.0;
 };
 
+std::string transforms_path(const std::string &folder);
+
 // Whether the folder holds the file.
 bool has_transforms(const std::string &folder);
 
 // Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Failure (unreadable) with
-// the file and the frame, for content that is not such a file and for pictures that do not exist.
+// the file and the frame, for content that is not such a file, is nested more than 100 deep, or names pictures that do
+// not exist.
 TransformsFile read_transforms(const std::string &folder);
 
 // Failure (unreadable) if the file states another size than that of the frames.

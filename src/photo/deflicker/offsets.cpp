@@ -20,6 +20,8 @@ namespace {
 constexpr char kOwn[] = "urn:lensprof:deflicker:1/", kExposure[] = "Exposure2012", kOffset[] = "ExposureOffset";
 constexpr char kGroup[] = "[Exposure]", kCompensation[] = "Compensation=", kOwnGroup[] = "[Lensprof]",
                kOwnOffset[] = "ExposureOffset=";
+constexpr char offset_header[] =
+    "file,seconds,state,segment,ev,ev_sigma,wanted_ev,change_ev,change_red,change_blue,agreeing,clipped\n";
 
 std::optional<double> number_in(const std::string &text) {
     char *end = nullptr;
@@ -148,9 +150,12 @@ const char *state_name(uint32_t state) {
     }
 }
 
+bool is_offset_table(const std::string &path) {
+    return is_regular_file(path) && read_head(path, sizeof offset_header - 1) == offset_header;
+}
+
 std::string offset_table(const std::vector<LevelledFrame> &frames) {
-    std::string text =
-        "file,seconds,state,segment,ev,ev_sigma,wanted_ev,change_ev,change_red,change_blue,agreeing,clipped\n";
+    std::string text = offset_header;
     for (const LevelledFrame &frame : frames) {
         const lensprof_deflicker_frame &m = frame.measured;
         std::string name = std::filesystem::path(frame.file).filename().string();

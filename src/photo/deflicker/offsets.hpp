@@ -29,6 +29,9 @@ std::vector<std::string> write_offsets(const std::vector<LevelledFrame> &frames,
 // A table: file, seconds, state, exposure before and after, correction, colours, error, clipped share.
 std::string offset_table(const std::vector<LevelledFrame> &frames);
 
+// Whether a file is such a table, by its first line.
+bool is_offset_table(const std::string &path);
+
 // The wanted EV of each frame from a table: one number per frame, or lines "file,ev"; a heading and comments with # are
 // skipped. Failure (unreadable) with the line.
 std::vector<double> read_curve(const std::string &path, const FrameSequence &sequence);

@@ -35,17 +35,6 @@ double width_of(cairo_t *cr, const std::string &text) {
     return extents.x_advance;
 }
 
-// Valid UTF-8 for cairo: invalid bytes become question marks.
-std::string valid_line(const std::string &text) {
-    std::string valid = one_line(text);
-    for (size_t i = 0; i < valid.size();) {
-        const size_t length = utf8_length(valid, i);
-        if (!length) valid[i] = '?';
-        i += std::max<size_t>(length, 1);
-    }
-    return valid;
-}
-
 // Text at most `widest` pixels wide: the middle of a longer one is omitted.
 void draw_text(cairo_t *cr, double x, double y, double widest, const std::string &text) {
     const std::string valid = valid_line(text);

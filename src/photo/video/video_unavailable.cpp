@@ -1,4 +1,4 @@
-// Built instead of video.cpp, video_writer.cpp and tracker.cpp without libav and OpenCV.
+// Built instead of video.cpp, video_writer.cpp, tracker.cpp and what these use, without libav and OpenCV.
 #include "photo/base/failure.hpp"
 #include "photo/video/tracker.hpp"
 #include "photo/video/video_writer.hpp"
@@ -24,6 +24,7 @@ bool VideoReader::next(VideoFrame &) { return false; }
 void VideoReader::read(Picture &) {}
 
 bool is_video_codec(const std::string &) { return false; }
+int worst_quality(const std::string &) { return -1; }
 
 VideoWriter::VideoWriter(const std::string &, const std::string &path, const VideoCodec &, Events &) {
     throw Failure(LENSPROF_ERROR_WRITE, path + ": videos are written with libav, without which this program was built; "

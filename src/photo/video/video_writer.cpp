@@ -10,7 +10,9 @@
 #include "photo/base/format.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/video/coding_loss.hpp"
 #include "photo/video/libav.hpp"
+#include "photo/video/stream_copy.hpp"
 
 namespace lensprof {
 namespace {
@@ -20,13 +22,19 @@ constexpr int coding_threads = 4;  // of any machine, because encoders give othe
 struct Coding {
     const char *name, *encoder;
     int quality, worst_quality;  // crf; -1: lossless
+    bool halves_odd_sizes;       // codes colours of half the size of frames with odd sides
     std::vector<std::pair<const char *, const char *>> options;
 };
 const Coding codings[] = {
-    {"h264", "libx264", 16, 51, {{"preset", "medium"}}},
-    {"h265", "libx265", 16, 51, {{"preset", "medium"}, {"x265-params", "log-level=none:frame-threads=2"}}},
-    {"vp9", "libvpx-vp9", 20, 63, {{"deadline", "good"}, {"cpu-used", "2"}, {"tile-columns", "2"}, {"row-mt", "1"}}},
-    {"ffv1", "ffv1", -1, -1, {{"level", "3"}, {"slices", "4"}, {"slicecrc", "1"}}},
+    {"h264", "libx264", 16, 51, false, {{"preset", "medium"}}},
+    {"h265", "libx265", 16, 51, false, {{"preset", "medium"}, {"x265-params", "log-level=none:frame-threads=2"}}},
+    {"vp9",
+     "libvpx-vp9",
+     20,
+     63,
+     true,
+     {{"deadline", "good"}, {"cpu-used", "2"}, {"tile-columns", "2"}, {"row-mt", "1"}}},
+    {"ffv1", "ffv1", -1, -1, true, {{"level", "3"}, {"slices", "4"}, {"slicecrc", "1"}}},
 };
 
 const Coding &coding_of(const std::string &name) {
@@ -78,96 +86,40 @@ const AVPixelFormat *formats_of(const AVCodec &encoder) {
 #endif
 }
 
-// That of the encoder which loses least.
-AVPixelFormat nearest_format(const AVCodec &encoder, AVPixelFormat source) {
-    const AVPixelFormat wanted = plain_format(source), *formats = formats_of(encoder);
-    if (!formats) return wanted;
-    const AVPixelFormat nearest = avcodec_find_best_pix_fmt_of_list(formats, wanted, 0, nullptr);
-    return nearest == AV_PIX_FMT_NONE ? formats[0] : plain_format(nearest);
+// Whether the colours of the format have a whole number of pixels in a frame.
+bool is_whole(AVPixelFormat format, int width, int height) {
+    const auto *described = av_pix_fmt_desc_get(format);
+    return described && width % (1 << described->log2_chroma_w) == 0 && height % (1 << described->log2_chroma_h) == 0;
 }
 
-// What belongs to the pixels' place, not to their coding.
-void copy_shape_data(const AVStream &from, AVStream &to) {
-    for (const AVPacketSideDataType type : {AV_PKT_DATA_DISPLAYMATRIX, AV_PKT_DATA_STEREO3D, AV_PKT_DATA_SPHERICAL}) {
-#if LIBAVFORMAT_VERSION_INT >= AV_VERSION_INT(60, 15, 100)
-        const AVPacketSideData *data =
-            av_packet_side_data_get(from.codecpar->coded_side_data, from.codecpar->nb_coded_side_data, type);
-        if (!data) continue;
-        AVPacketSideData *copy = av_packet_side_data_new(&to.codecpar->coded_side_data,
-                                                         &to.codecpar->nb_coded_side_data, type, data->size, 0);
-        if (!copy) throw std::bad_alloc();
-        std::copy_n(data->data, data->size, copy->data);
+// That of the encoder which loses least of those that it codes in this size.
+AVPixelFormat nearest_format(const AVCodec &encoder, const Coding &coding, const AVCodecParameters &source) {
+    const AVPixelFormat wanted = plain_format(static_cast<AVPixelFormat>(source.format));
+    std::vector<AVPixelFormat> fitting;
+    for (const AVPixelFormat *format = formats_of(encoder); format && *format != AV_PIX_FMT_NONE; format++)
+        if (coding.halves_odd_sizes || is_whole(*format, source.width, source.height)) fitting.push_back(*format);
+    if (fitting.empty()) return wanted;
+    fitting.push_back(AV_PIX_FMT_NONE);
+    const AVPixelFormat nearest = avcodec_find_best_pix_fmt_of_list(fitting.data(), wanted, 0, nullptr);
+    return plain_format(nearest == AV_PIX_FMT_NONE ? fitting[0] : nearest);
+}
+
+bool has_alpha(AVPixelFormat format) {
+    const auto *described = av_pix_fmt_desc_get(format);
+    return described && (described->flags & AV_PIX_FMT_FLAG_ALPHA);
+}
+
+bool is_top_field_first(AVFieldOrder order) { return order == AV_FIELD_TT || order == AV_FIELD_BT; }
+
+// Marks a frame of an interlaced video with the order of its fields, which encoders do not take from the stream.
+void set_fields(AVFieldOrder order, AVFrame &frame) {
+    if (order <= AV_FIELD_PROGRESSIVE) return;
+    const bool is_top_first = is_top_field_first(order);
+#if LIBAVUTIL_VERSION_INT >= AV_VERSION_INT(58, 7, 100)
+    frame.flags |= AV_FRAME_FLAG_INTERLACED | (is_top_first ? AV_FRAME_FLAG_TOP_FIELD_FIRST : 0);
 #else
-        size_t size = 0;
-        const uint8_t *data = av_stream_get_side_data(&from, type, &size);
-        if (!data) continue;
-        uint8_t *copy = av_stream_new_side_data(&to, type, size);
-        if (!copy) throw std::bad_alloc();
-        std::copy_n(data, size, copy);
+    frame.interlaced_frame = 1, frame.top_field_first = is_top_first;
 #endif
-    }
-}
-
-// Tags that the writer of the container sets, or that describe the coding of the source.
-bool is_of_coding(const std::string &key) {
-    for (const char *prefix : {"major_brand", "minor_version", "compatible_brands", "encoder", "ENCODER", "rotate",
-                               "DURATION", "BPS", "NUMBER_OF_", "_STATISTICS", "vendor_id"})
-        if (key.rfind(prefix, 0) == 0) return true;
-    return false;
-}
-
-void copy_tags(const AVDictionary *from, AVDictionary **to, bool is_of_copy) {
-    const AVDictionaryEntry *entry = nullptr;
-    while ((entry = av_dict_get(from, "", entry, AV_DICT_IGNORE_SUFFIX)))
-        if (is_of_copy || !is_of_coding(entry->key)) av_dict_set(to, entry->key, entry->value, 0);
-}
-
-void copy_chapters(const AVFormatContext &from, AVFormatContext &to) {
-    if (from.nb_chapters == 0) return;
-    to.chapters = static_cast<AVChapter **>(av_calloc(from.nb_chapters, sizeof(AVChapter *)));
-    if (!to.chapters) throw std::bad_alloc();
-    for (unsigned i = 0; i < from.nb_chapters; i++) {
-        auto *chapter = static_cast<AVChapter *>(av_mallocz(sizeof(AVChapter)));
-        if (!chapter) throw std::bad_alloc();
-        chapter->id = from.chapters[i]->id, chapter->time_base = from.chapters[i]->time_base;
-        chapter->start = from.chapters[i]->start, chapter->end = from.chapters[i]->end;
-        to.chapters[to.nb_chapters++] = chapter;
-        copy_tags(from.chapters[i]->metadata, &chapter->metadata, true);
-    }
-}
-
-const char *kind_of(const AVStream &stream) {
-    switch (stream.codecpar->codec_type) {
-    case AVMEDIA_TYPE_AUDIO: return "sound";
-    case AVMEDIA_TYPE_SUBTITLE: return "subtitles";
-    case AVMEDIA_TYPE_VIDEO: return stream.disposition & AV_DISPOSITION_ATTACHED_PIC ? "picture" : "second video";
-    case AVMEDIA_TYPE_ATTACHMENT: return "attachment";
-    default: return "data";
-    }
-}
-
-// Some rows of a frame, to compare with those that the finished video shows.
-struct Sampled {
-    uint64_t number;
-    std::vector<uint8_t> rows;
-};
-
-std::vector<uint8_t> sampled_rows(const Picture &picture) {
-    constexpr uint32_t step = 16;  // rows
-    std::vector<uint8_t> rows;
-    for (uint32_t y = step / 2 < picture.height ? step / 2 : 0; y < picture.height; y += step) {
-        const uint8_t *row = &picture.pixels[y * picture.row_bytes];
-        rows.insert(rows.end(), row, row + picture.row_bytes);
-    }
-    return rows;
-}
-
-double mean_difference(uint32_t sample, const std::vector<uint8_t> &a, const std::vector<uint8_t> &b) {
-    const size_t count = a.size() / (sample == LENSPROF_SAMPLE_U16 ? 2 : 1);
-    double sum = 0.0;
-    for (size_t n = 0; n < count; n++)
-        sum += std::abs(sample_value(sample, a.data(), n) - sample_value(sample, b.data(), n));
-    return 255.0 * sum / double(count);
 }
 
 }  // namespace
@@ -185,53 +137,48 @@ private:
     void written(int code) const {
         if (code < 0) throw Failure(LENSPROF_ERROR_WRITE, path_ + ": cannot be written: " + text_of_error(code));
     }
-    // That of the source, if it is another one.
-    std::string fitting_suffix() const {
-        const std::string suffix = lowercase_extension(source_);
-        return suffix == lowercase_extension(path_) || (suffix != "mp4" && suffix != "mov") ? "mkv" : suffix;
-    }
     void open_source();
     void open_encoder(const VideoCodec &codec);
     void set_colours(AVPixelFormat stored);
+    void note_pixels(AVPixelFormat stored, const Coding &coding) const;
     void add_streams();
-    bool add_copy(unsigned index);
+    void add_coded();
     void write_header();
     void open_scaler(AVPixelFormat rgb);
     void convert(const Picture &picture, AVFrame &frame);
-    void copy_until(double seconds);
     void encode(const AVFrame *frame);
-    VideoLoss measured() const;
 
     std::string source_, path_;
     Events &events_;
+    uint16_t orientation_;  // of the source
     std::unique_ptr<OutputFile> output_;
     Libav<AVFormatContext> from_;
     std::unique_ptr<AVFormatContext, OutputClose> to_;
     Libav<AVCodecContext> codec_;
     Libav<SwsContext> scaler_;
     Libav<AVFrame> padded_;
-    Libav<AVPacket> coded_{av_packet_alloc()}, copied_{av_packet_alloc()};
-    int stream_ = -1;
-    std::vector<int> stream_of_;                     // of the output, for each of the source; -1: none
-    bool is_copy_held_ = false, is_copied_ = false;  // copied_ holds the next packet; all were copied
+    Libav<AVPacket> coded_{av_packet_alloc()};
+    int stream_ = -1, coded_stream_ = -1;  // of the source, and of the output
+    double later_s_ = 0.0;                 // of the source's times, which begin at 0 in another container
+    std::unique_ptr<StreamCopy> copy_;
     std::optional<int64_t> last_time_;
     std::map<int64_t, int64_t> durations_;  // by time stamp, of the frames in the encoder
-    std::vector<Sampled> sampled_;
-    uint32_t sample_ = LENSPROF_SAMPLE_U8;
-    uint64_t frames_ = 0;
+    CodingLoss loss_;
 };
 
 VideoWriter::Encoder::Encoder(const std::string &source, const std::string &path, const VideoCodec &codec,
                               Events &events)
-    : source_(source), path_(path), events_(events) {
-    const VideoReader readable(source);  // else its failure states why
-    if (!coded_ || !copied_) throw std::bad_alloc();
+    : source_(source), path_(path), events_(events), orientation_(VideoReader(source).info().orientation) {
+    if (!coded_) throw std::bad_alloc();
     open_source();
     AVFormatContext *file = nullptr;
     if (avformat_alloc_output_context2(&file, nullptr, nullptr, path.c_str()) < 0)
         refuse("the installed libavformat does not write such files; give a name with another suffix");
     to_.reset(file);
     to_->flags |= AVFMT_FLAG_BITEXACT;
+    if (from_->start_time != AV_NOPTS_VALUE && !av_match_name(to_->oformat->name, from_->iformat->name))
+        later_s_ = double(from_->start_time) / AV_TIME_BASE;
+    copy_ = std::make_unique<StreamCopy>(source, path, *from_, *to_, later_s_, events);
     open_encoder(codec);
     add_streams();
     output_ = std::make_unique<OutputFile>(path);
@@ -277,13 +224,10 @@ void VideoWriter::Encoder::open_encoder(const VideoCodec &codec) {
     if (avformat_query_codec(to_->oformat, encoder->id, FF_COMPLIANCE_NORMAL) != 1)
         refuse(std::string("a file of this suffix does not hold ") + coding.name
                + "; give a name with .mkv, or choose another codec");
-    if (codec.quality > coding.worst_quality)
-        refuse(format("%s has qualities of 0 to %d, where lower is better, not %d", coding.name, coding.worst_quality,
-                      codec.quality));
     codec_.reset(avcodec_alloc_context3(encoder));
     if (!codec_) throw std::bad_alloc();
     codec_->width = stated.width, codec_->height = stated.height;
-    codec_->pix_fmt = nearest_format(*encoder, stored);
+    codec_->pix_fmt = nearest_format(*encoder, coding, stated);
     codec_->time_base = stream.time_base, codec_->framerate = stream.avg_frame_rate;
     codec_->sample_aspect_ratio =
         stream.sample_aspect_ratio.num ? stream.sample_aspect_ratio : stated.sample_aspect_ratio;
@@ -296,76 +240,52 @@ void VideoWriter::Encoder::open_encoder(const VideoCodec &codec) {
     set_colours(stored);
     Options options;
     for (const auto &[key, value] : coding.options) options.set(key, value);
+    if (stated.field_order > AV_FIELD_PROGRESSIVE && encoder->id == AV_CODEC_ID_H264)
+        options.set("x264-params", is_top_field_first(stated.field_order) ? "tff=1" : "bff=1");
     if (coding.quality >= 0) options.set("crf", std::to_string(codec.quality < 0 ? coding.quality : codec.quality));
     const int code = avcodec_open2(codec_.get(), encoder, options.get());
     if (code < 0)
         refuse(format("%s cannot code frames of %d x %d pixels in %s (%s); choose another codec", coding.encoder,
                       stated.width, stated.height, av_get_pix_fmt_name(codec_->pix_fmt), text_of_error(code).c_str()));
+    note_pixels(stored, coding);
+}
+
+void VideoWriter::Encoder::note_pixels(AVPixelFormat stored, const Coding &coding) const {
+    const std::string of_size = coding.halves_odd_sizes || is_whole(stored, codec_->width, codec_->height)
+                                    ? ""
+                                    : format(" in frames of %d x %d pixels", codec_->width, codec_->height);
     if (codec_->pix_fmt != plain_format(stored))
         events_.note(path_, std::string("its pixels are ") + av_get_pix_fmt_name(codec_->pix_fmt) + ", not "
                                 + av_get_pix_fmt_name(stored) + " as those of the source, which " + coding.encoder
-                                + " does not code");
+                                + " does not code" + of_size);
+    if (has_alpha(stored)) events_.note(path_, "its frames are opaque, because transparency is not levelled");
 }
 
-// A copy of another stream; false if it has no place in the container and can be left out.
-bool VideoWriter::Encoder::add_copy(unsigned index) {
-    const AVStream &stream = *from_->streams[index];
-    const AVCodecParameters &stated = *stream.codecpar;
-    const AVMediaType type = stated.codec_type;
-    const std::string what =
-        std::string(kind_of(stream))
-        + (stated.codec_id == AV_CODEC_ID_NONE ? "" : std::string(" (") + avcodec_get_name(stated.codec_id) + ")");
-    // Titles of chapters and time codes, which libavformat writes with the chapters and tags.
-    if (type == AVMEDIA_TYPE_DATA
-        && (stated.codec_tag == MKTAG('t', 'e', 'x', 't') || stated.codec_tag == MKTAG('t', 'm', 'c', 'd')))
-        return false;
-    if (avformat_query_codec(to_->oformat, stated.codec_id, FF_COMPLIANCE_NORMAL) != 1) {
-        if (type != AVMEDIA_TYPE_DATA && type != AVMEDIA_TYPE_ATTACHMENT && type != AVMEDIA_TYPE_UNKNOWN)
-            refuse("a file of this suffix does not hold the " + what + " of " + source_ + "; give a name with ."
-                   + fitting_suffix());
-        events_.note(source_,
-                     format("stream %u, ", index) + what + ", is left out, because " + path_ + " cannot hold it");
-        return false;
-    }
-    AVStream *copy = avformat_new_stream(to_.get(), nullptr);
-    if (!copy || avcodec_parameters_copy(copy->codecpar, &stated) < 0) throw std::bad_alloc();
-    const AVCodecTag *const *tags = to_->oformat->codec_tag;
-    if (tags && av_codec_get_id(tags, stated.codec_tag) != stated.codec_id && av_codec_get_tag(tags, stated.codec_id))
-        copy->codecpar->codec_tag = 0;
-    copy->time_base = stream.time_base, copy->disposition = stream.disposition;
-    copy->avg_frame_rate = stream.avg_frame_rate, copy->sample_aspect_ratio = stream.sample_aspect_ratio;
-    copy_tags(stream.metadata, &copy->metadata, true);
-    if (type == AVMEDIA_TYPE_VIDEO) {
-        copy_shape_data(stream, *copy);
-        if (!(stream.disposition & AV_DISPOSITION_ATTACHED_PIC))
-            events_.note(source_, format("has a second video, stream %u, which is copied as it is", index));
-    }
-    return true;
+void VideoWriter::Encoder::add_coded() {
+    const AVStream &stream = *from_->streams[stream_];
+    AVStream *coded = avformat_new_stream(to_.get(), nullptr);
+    if (!coded || avcodec_parameters_from_context(coded->codecpar, codec_.get()) < 0) throw std::bad_alloc();
+    if (codec_->codec_id == AV_CODEC_ID_HEVC && to_->oformat->codec_tag
+        && av_codec_get_id(to_->oformat->codec_tag, MKTAG('h', 'v', 'c', '1')) == AV_CODEC_ID_HEVC)
+        coded->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');  // which players of Apple expect
+    coded->time_base = stream.time_base, coded->disposition = stream.disposition;
+    coded->avg_frame_rate = stream.avg_frame_rate, coded->sample_aspect_ratio = codec_->sample_aspect_ratio;
+    copy_tags(stream.metadata, &coded->metadata, false);
+    copy_shape_data(stream, *coded);
+    coded_stream_ = coded->index;
 }
 
 void VideoWriter::Encoder::add_streams() {
     for (unsigned i = 0; i < from_->nb_streams; i++) {
-        stream_of_.push_back(static_cast<int>(to_->nb_streams));
         if (int(i) != stream_) {
-            if (!add_copy(i)) {
-                stream_of_.back() = -1;
-                from_->streams[i]->discard = AVDISCARD_ALL;
-            }
+            copy_->add();
             continue;
         }
-        const AVStream &stream = *from_->streams[i];
-        AVStream *coded = avformat_new_stream(to_.get(), nullptr);
-        if (!coded || avcodec_parameters_from_context(coded->codecpar, codec_.get()) < 0) throw std::bad_alloc();
-        if (codec_->codec_id == AV_CODEC_ID_HEVC && to_->oformat->codec_tag
-            && av_codec_get_id(to_->oformat->codec_tag, MKTAG('h', 'v', 'c', '1')) == AV_CODEC_ID_HEVC)
-            coded->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');  // which players of Apple expect
-        coded->time_base = stream.time_base, coded->disposition = stream.disposition;
-        coded->avg_frame_rate = stream.avg_frame_rate, coded->sample_aspect_ratio = codec_->sample_aspect_ratio;
-        copy_tags(stream.metadata, &coded->metadata, false);
-        copy_shape_data(stream, *coded);
+        copy_->skip();
+        add_coded();
     }
     copy_tags(from_->metadata, &to_->metadata, false);
-    copy_chapters(*from_, *to_);
+    copy_chapters(*from_, *to_, later_s_);
 }
 
 void VideoWriter::Encoder::write_header() {
@@ -378,7 +298,7 @@ void VideoWriter::Encoder::write_header() {
     const int code = avformat_write_header(to_.get(), options.get());
     if (code == AVERROR(EINVAL) || code == AVERROR_PATCHWELCOME)
         refuse("a file of this suffix does not hold the streams of " + source_ + "; give a name with ."
-               + fitting_suffix());
+               + fitting_suffix(source_, path_));
     written(code);
 }
 
@@ -406,111 +326,62 @@ void VideoWriter::Encoder::convert(const Picture &picture, AVFrame &frame) {
     frame.color_primaries = codec_->color_primaries, frame.color_trc = codec_->color_trc;
     frame.chroma_location = codec_->chroma_sample_location;
     frame.sample_aspect_ratio = codec_->sample_aspect_ratio;
+    set_fields(codec_->field_order, frame);
     if (av_frame_get_buffer(&frame, 0) < 0) throw std::bad_alloc();
     sws_scale(scaler_.get(), padded_->data, padded_->linesize, 0, frame.height, frame.data, frame.linesize);
 }
 
 void VideoWriter::Encoder::write(const VideoFrame &frame, size_t frames) {
-    constexpr size_t most_sampled = 16;
     const AVRational base = codec_->time_base;
     const auto counted_time = static_cast<int64_t>(std::llround(frame.seconds / av_q2d(base)));
-    int64_t time = frame.time_stamp.value_or(counted_time);
+    const auto later = static_cast<int64_t>(std::llround(later_s_ / av_q2d(base)));
+    int64_t time = frame.time_stamp ? *frame.time_stamp - later : counted_time;
     if (last_time_) time = std::max(time, *last_time_ + 1);
-    last_time_ = time, sample_ = frame.picture.sample;
-    copy_until(double(time) * av_q2d(base));
+    last_time_ = time;
+    copy_->until(double(time + later) * av_q2d(base));
     const Libav<AVFrame> pixels(av_frame_alloc());
     if (!pixels) throw std::bad_alloc();
     convert(frame.picture, *pixels);
     pixels->pts = time;
     durations_[time] = static_cast<int64_t>(std::llround(frame.duration_s / av_q2d(base)));
     encode(pixels.get());
-    if (frames_++ % std::max<size_t>(frames / most_sampled, 1) == 0 && sampled_.size() < 2 * most_sampled)
-        sampled_.push_back({frame.number, sampled_rows(frame.picture)});
+    loss_.add(frame, frames);
 }
 
 void VideoWriter::Encoder::encode(const AVFrame *frame) {
     int code = avcodec_send_frame(codec_.get(), frame);
     written(code);
-    const int index = stream_of_[size_t(stream_)];
     while ((code = avcodec_receive_packet(codec_.get(), coded_.get())) >= 0) {
         const auto duration = durations_.find(coded_->pts);
         if (duration != durations_.end()) {
             coded_->duration = duration->second;
             durations_.erase(duration);
         }
-        coded_->stream_index = index;
-        av_packet_rescale_ts(coded_.get(), codec_->time_base, to_->streams[index]->time_base);
+        coded_->stream_index = coded_stream_;
+        av_packet_rescale_ts(coded_.get(), codec_->time_base, to_->streams[coded_stream_]->time_base);
         written(av_interleaved_write_frame(to_.get(), coded_.get()));
     }
     if (code != AVERROR(EAGAIN) && code != AVERROR_EOF) written(code);
 }
 
-// Copies the packets of the other streams up to a time.
-void VideoWriter::Encoder::copy_until(double seconds) {
-    while (!is_copied_) {
-        const int code = is_copy_held_ ? 0 : av_read_frame(from_.get(), copied_.get());
-        if (code == AVERROR_EOF) {
-            is_copied_ = true;
-            return;
-        }
-        if (code < 0)
-            throw Failure(LENSPROF_ERROR_READ, source_ + ": its sound or other data cannot be read: "
-                                                   + text_of_error(code) + "; copy the file again");
-        const auto stream = static_cast<size_t>(copied_->stream_index);
-        is_copy_held_ = true;
-        const AVRational base = from_->streams[stream]->time_base;
-        const int64_t time = copied_->dts != AV_NOPTS_VALUE ? copied_->dts : copied_->pts;
-        if (time != AV_NOPTS_VALUE && double(time) * av_q2d(base) > seconds) return;
-        is_copy_held_ = false;
-        if (stream >= stream_of_.size() || stream_of_[stream] < 0 || int(stream) == stream_) {
-            av_packet_unref(copied_.get());
-            continue;
-        }
-        copied_->stream_index = stream_of_[stream], copied_->pos = -1;
-        av_packet_rescale_ts(copied_.get(), base, to_->streams[stream_of_[stream]]->time_base);
-        written(av_interleaved_write_frame(to_.get(), copied_.get()));
-    }
-}
-
-VideoLoss VideoWriter::Encoder::measured() const {
-    VideoLoss loss{codec_->codec->name, av_get_pix_fmt_name(codec_->pix_fmt)};
-    VideoReader reader(output_->temporary());
-    if (reader.info().orientation != VideoReader(source_).info().orientation)
-        events_.warn(path_, "does not hold the rotation of " + source_
-                                + " with the installed libavformat; give a name with .mp4 to keep it");
-    VideoFrame frame;
-    auto wanted = sampled_.begin();
-    uint64_t frames = 0;
-    for (; reader.next(frame); frames++) {
-        stop_if_cancelled();
-        if (wanted == sampled_.end() || frames != wanted->number) continue;
-        reader.read(frame.picture);
-        const double difference = mean_difference(sample_, wanted++->rows, sampled_rows(frame.picture));
-        loss.mean += difference / double(sampled_.size());
-        loss.largest = std::max(loss.largest, difference);
-    }
-    if (frames != frames_)
-        throw Failure(LENSPROF_ERROR_WRITE,
-                      path_
-                          + format(": %llu frames were coded, but %llu are read back; choose "
-                                   "another codec or suffix",
-                                   static_cast<unsigned long long>(frames_), static_cast<unsigned long long>(frames)));
-    return loss;
-}
-
 VideoLoss VideoWriter::Encoder::finish() {
     encode(nullptr);
-    copy_until(INFINITY);
+    copy_->until(INFINITY);
     written(av_write_trailer(to_.get()));
     written(avio_closep(&to_->pb));
-    const VideoLoss loss = measured();
+    if (VideoReader(output_->temporary()).info().orientation != orientation_)
+        events_.warn(path_, "does not hold the rotation of " + source_
+                                + " with the installed libavformat; give a name with .mp4 to keep it");
+    const auto [mean, largest] = loss_.measured(output_->temporary(), path_);
     output_->commit();
-    return loss;
+    return {codec_->codec->name, av_get_pix_fmt_name(codec_->pix_fmt), mean, largest};
 }
 
 bool is_video_codec(const std::string &name) {
     return std::any_of(std::begin(codings), std::end(codings), [&](const Coding &c) { return name == c.name; });
 }
+
+int worst_quality(const std::string &codec) { return coding_of(codec).worst_quality; }
 
 VideoWriter::VideoWriter(const std::string &source, const std::string &path, const VideoCodec &codec, Events &events)
     : encoder_(std::make_unique<Encoder>(source, path, codec, events)) {}

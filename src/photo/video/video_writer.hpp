@@ -29,6 +29,9 @@ bool is_video_name(const std::string &path);
 // Whether `name` is one of VideoCodec.
 bool is_video_codec(const std::string &name);
 
+// The largest number of such a codec's quality; -1: it is lossless.
+int worst_quality(const std::string &codec);
+
 // Codes the frames of a video again, with its time stamps, rotation, shape of pixels, colour tags, metadata and
 // chapters. Its other streams are copied packet by packet; those that do not fit the container are noted if they are
 // data, and otherwise refused. The depth and the sampling of colours are kept where the encoder has them. Everything is
