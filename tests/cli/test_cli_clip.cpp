@@ -55,8 +55,13 @@ void assert_model(const std::string &out) {
 // Response, falloff and exposures of a folder as cameras of visual odometry record it.
 void test_folder(void **) {
     if (!can_read_video()) skip();
-    const Json json = json_of(
-        {"calibrate", in_folder("moving"), "-o", in_folder("out"), "--frames", in_folder("levelled"), "--json"});
+    fs::create_directories(folder / "levelled");
+    save_text(in_folder("levelled/frame_00099.png"), "of a longer clip");
+    save_text(in_folder("levelled/notes.txt"), "kept");
+    const Json json = json_of({"calibrate", in_folder("moving"), "-o", in_folder("out"), "--frames",
+                               in_folder("levelled"), "--overwrite", "--json"});
+    assert_false(fs::exists(in_folder("levelled/frame_00099.png")));
+    assert_true(fs::exists(in_folder("levelled/notes.txt")));
     assert_int_equal(json["clip"]["measured"].get<int>(), frames);
     assert_int_equal(json["clip"]["segments"].get<int>(), 1);
     assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");

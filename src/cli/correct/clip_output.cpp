@@ -106,23 +106,23 @@ ClipOutput::ClipOutput(const std::string &source, const std::string &path, const
 }
 
 // Of the frames that the folder has already.
-void ClipOutput::check_frames(const std::vector<std::string> &inputs, bool overwrite) const {
-    std::set<std::string> read, older;
+void ClipOutput::check_frames(const std::vector<std::string> &inputs, bool overwrite) {
+    std::set<std::string> read;
     for (const std::string &input : inputs) read.insert(file_identity(input));
     std::error_code error;
     for (std::filesystem::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         const size_t number = frame_number(name);
         if (number == 0 || name != name_of(number - 1)) continue;
-        older.insert(entry->path().string());
+        older_.insert(entry->path().string());
         if (read.count(file_identity(entry->path().string())))
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           entry->path().string() + ": is a frame of the input; give the output another name");
     }
-    if (!older.empty() && !overwrite)
+    if (!older_.empty() && !overwrite)
         throw Failure(
             LENSPROF_ERROR_ARGUMENT,
-            *older.begin() + ": exists; give the folder another name, or replace its frames with --overwrite");
+            *older_.begin() + ": exists; give the folder another name, or replace its frames with --overwrite");
 }
 
 std::string ClipOutput::name_of(size_t index) const { return format("%s%05zu", frame_prefix, index + 1) + suffix_; }
@@ -148,12 +148,16 @@ void ClipOutput::write_unchanged(size_t index, size_t count, VideoFrame &frame) 
     WriteOptions options;
     options.jpeg_quality = std::max(quality_, 0);
     const bool is_reduced = suffix_ == ".jpg" && frame.picture.sample == LENSPROF_SAMPLE_U16;
-    write_picture((std::filesystem::path(path_) / name_of(index)).string(),
-                  is_reduced ? with_8_bits(frame.picture) : frame.picture, options);
+    const std::string file = (std::filesystem::path(path_) / name_of(index)).string();
+    write_picture(file, is_reduced ? with_8_bits(frame.picture) : frame.picture, options);
+    older_.erase(file);
 }
 
 void ClipOutput::finish() {
     if (writer_) loss_ = writer_->finish();
+    std::error_code ignored;
+    for (const std::string &file : older_) std::filesystem::remove(file, ignored);
+    older_.clear();
 }
 
 Json ClipOutput::json() const {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,16 +40,17 @@ public:
     void write_levelled(size_t index, size_t count, const lensprof_profile &model, const lensprof_exposure &measured,
                         const lensprof_exposure &wanted, VideoFrame &frame);
     void write_unchanged(size_t index, size_t count, VideoFrame &frame);
-    void finish();
+    void finish();  // frames of an earlier run that this one did not replace are removed
 
     Json json() const;         // codec and loss of a video; null for a folder
     std::string text() const;  // the same for people
     const std::string &path() const { return path_; }
 
 private:
-    void check_frames(const std::vector<std::string> &inputs, bool overwrite) const;
+    void check_frames(const std::vector<std::string> &inputs, bool overwrite);
 
     std::string path_, suffix_;
+    std::set<std::string> older_;  // frames in the folder that this run has not written
     int quality_;
     std::unique_ptr<VideoWriter> writer_;
     std::optional<VideoLoss> loss_;
