@@ -141,7 +141,8 @@ void test_deflicker(void **) {
         return sum / (60 * 60);
     };
     for (const uint32_t number : {6u, 13u, 24u}) assert_close(middle_of(number), middle_of(1), 1.5);
-    const Outcome moving = run_words({"deflicker", in_folder("clip.mkv"), "-o", in_folder("uneven")});
+    const Outcome moving =
+        run_words({"deflicker", encoded("moving", "m.mkv", "-c:v ffv1 -pix_fmt yuv444p"), "-o", in_folder("uneven")});
     assert_int_equal(moving.code, not_usable);
     assert_true(contains(moving.err, "`lensprof calibrate`"));
 }
