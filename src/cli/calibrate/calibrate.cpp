@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -108,11 +107,10 @@ void check_report(const CalibrateOptions &o) {
     if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
-// Failure for a file with the name of a video that is not a video.
+// Failure for a file with the name of a video that is not a video. Ogg may be sound, which is named elsewhere.
 void check_video_name(const std::string &path) {
-    static const std::set<std::string> suffixes = {"mp4",  "mov", "mkv", "webm", "avi", "m4v", "mpg",
-                                                   "mpeg", "ts",  "mts", "m2ts", "wmv", "3gp", "mxf"};
-    if (!path_exists(path) || is_folder(path) || !suffixes.count(lowercase_extension(path)) || is_video(path)) return;
+    if (!path_exists(path) || is_folder(path) || !has_video_suffix(path) || is_video(path)) return;
+    if (lowercase_extension(path) == "ogv") return;
     throw Failure(LENSPROF_ERROR_READ, path + ": is not a video, or its beginning is damaged; give an intact file");
 }
 

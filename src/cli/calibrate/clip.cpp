@@ -161,7 +161,7 @@ std::string times_file(const ClipCommand &o) {
     return path_exists(times) ? times : std::string();
 }
 
-ClipOptions fit_options(const std::string &times, const ClipTracks &clip) {
+ClipOptions options_of_clip(const std::string &times, const ClipTracks &clip) {
     ClipOptions options;
     if (!times.empty()) options.known_ev = read_clip_times(times, clip);
     if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
@@ -228,7 +228,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     const auto levelled = open_levelled(o, inputs, events);
     ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events);
     check_clip(clip);
-    const ClipOptions options = fit_options(times, clip);
+    const ClipOptions options = options_of_clip(times, clip);
     const lensprof_profile_key key = clip_key(clip.info);
     ClipFit fit = fit_clip(options, key, clip, events);
     check_wanted(o, clip);

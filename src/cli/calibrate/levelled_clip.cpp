@@ -13,6 +13,8 @@
 namespace lensprof {
 namespace {
 
+constexpr char images_name[] = "images";  // folder of the frames of a transforms.json, as nerfstudio keeps them
+
 // The exposure that levelled frames have, per segment: the mean of its group, or the exposure of the group's first
 // frame that is measured or of a given one. The white balance of that frame is only for its own segment.
 std::vector<lensprof_exposure> wanted_exposures(const std::string &to, const ClipTracks &clip) {
@@ -86,7 +88,8 @@ void write_transforms(const ClipCommand &o, const TransformsFile &transforms, co
     for (size_t i = 0; i < clip.frames.size(); i++) {
         const ClipFrame &frame = clip.frames[i];
         if (frame.state == ClipState::measured)
-            poses.push_back({"images/" + output.name_of(i), frame.exposure.ev - wanted[frame.segment].ev});
+            poses.push_back(
+                {std::string(images_name) + "/" + output.name_of(i), frame.exposure.ev - wanted[frame.segment].ev});
         else
             poses.emplace_back();
     }
@@ -109,9 +112,8 @@ std::unique_ptr<ClipOutput> open_levelled(const ClipCommand &o, const std::vecto
     if (has_transforms(o.input) && has_transforms(o.levelled) && !o.overwrite)
         throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": has a " + transforms_name
                                                    + "; give another name, or replace it with --overwrite");
-    // The frames of a transforms.json are in images/, as nerfstudio keeps them.
     const std::string place = has_transforms(o.input) && !is_video_output(o.levelled)
-                                  ? (std::filesystem::path(o.levelled) / "images").string()
+                                  ? (std::filesystem::path(o.levelled) / images_name).string()
                                   : o.levelled;
     if (is_in_new_folder(o.levelled, o.output)) make_folder(o.output);
     auto levelled = std::make_unique<ClipOutput>(o.input, place, inputs, o.codec, o.overwrite, events);

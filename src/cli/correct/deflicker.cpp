@@ -270,6 +270,13 @@ std::string table_name(const DeflickerOptions &o, bool is_to_video) {
     return (is_to_video ? output.replace_extension(".csv") : output / "exposures.csv").string();
 }
 
+// Failure before anything is measured, for a chart that would replace an input or cannot be written.
+void check_chart(const DeflickerOptions &o, const std::vector<std::string> &reserved) {
+    if (o.chart.empty()) return;
+    check_not_reserved(o.chart, "chart", reserved);
+    if (!is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
+}
+
 // Failure before anything is measured, for a table that would replace a file which no earlier run wrote.
 void check_table(const DeflickerOptions &o, bool is_to_video, std::vector<std::string> reserved) {
     const std::string table = table_name(o, is_to_video);
@@ -377,8 +384,7 @@ int run_clip(const DeflickerOptions &o, Streams &streams) {
     check_clip_options(o);
     Progress progress(streams, o.progress);
     const std::string &clip = o.files[0];
-    if (!o.chart.empty()) check_not_reserved(o.chart, "chart", {clip, o.folder()});
-    if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
+    check_chart(o, {clip, o.folder()});
     check_table(o, is_video_output(o.folder()), {clip});
     ClipOutput output(clip, o.folder(), {clip, o.to}, o.codec, o.kind.overwrite || !o.writes(Write::copies), progress);
     Levels levels;
@@ -415,8 +421,7 @@ int run_pictures(const DeflickerOptions &o, Streams &streams) {
     for (const Frame &frame : levels.sequence.frames) inputs.push_back(frame.file);
     check_region(measure, levels.sequence.frames[0]);
     check_table(o, false, inputs);
-    if (!o.chart.empty()) check_not_reserved(o.chart, "chart", inputs);
-    if (!o.chart.empty() && !is_in_new_folder(o.chart, o.folder())) check_output_file(o.chart);
+    check_chart(o, inputs);
     if (is_folder(o.folder())) remove_stale_temporaries(o.folder());
     levels.measured = measure_frames(measure, levels.sequence, progress);
     std::vector<double> curve;

@@ -180,11 +180,11 @@ double error_of_known(const std::vector<double> &known_ev, int shift, const Clip
 KnownAgreement agreement_with(const std::vector<double> &known_ev, const ClipTracks &clip) {
     constexpr double much_better = 0.5, shifted_ev = 0.02;
     KnownAgreement agreement{error_of_known(known_ev, 0, clip), 0};
+    if (!(agreement.rms_ev > shifted_ev)) return agreement;
+    double best_ev = much_better * agreement.rms_ev;
     for (const int shift : {-2, -1, 1, 2}) {
         const double error_ev = error_of_known(known_ev, shift, clip);
-        const double best_ev = agreement.better_shift ? error_of_known(known_ev, agreement.better_shift, clip)
-                                                      : much_better * agreement.rms_ev;
-        if (agreement.rms_ev > shifted_ev && error_ev < best_ev) agreement.better_shift = shift;
+        if (error_ev < best_ev) best_ev = error_ev, agreement.better_shift = shift;
     }
     return agreement;
 }

@@ -38,6 +38,9 @@ bool can_read_video();
 // Whether the first bytes of a file are those of a video.
 bool is_video(const std::string &path);
 
+// Whether a file has the name of a video.
+bool has_video_suffix(const std::string &path);
+
 // Decodes a video from its beginning, and holds one frame. The matrix (BT.601, 709, 2020, ...) and the range (limited
 // or full) are those that the stream states; without a matrix, BT.709 for frames above 1024 x 576 pixels, else BT.601.
 // Grey values stay as rendered: what is known of their transfer function is not applied. All functions throw Failure
