@@ -16,16 +16,28 @@ enum class Motion {
     still
 };
 
+// How the exposure of a clip changes.
+enum class Course {
+    walk,  // automatic exposure: a random walk
+    steps,
+    sinus,
+    fixed
+};
+
 struct VideoPlan {
     uint64_t seed = 1;
     uint32_t width = 640, height = 480, channels = 1;
     uint32_t tracks = 300;
     Motion motion = Motion::pan;
-    double speed = 6.0;     // px per frame; handheld: the size of a sway
-    double lost = 0.01;     // share of tracks that the tracker loses per frame
-    double corner = 0.6;    // M in the corner
-    double ev_range = 1.0;  // of the automatic exposure, either side; 0: constant
+    double speed = 6.0;   // px per frame; handheld: the size of a sway
+    double lost = 0.01;   // share of tracks that the tracker loses per frame
+    double corner = 0.6;  // M in the corner
+    double edge = 0.0;    // share of the falloff that rises with r^6
+    double center[2] = {0.0, 0.0};
+    Course course = Course::walk;
+    double ev_range = 1.0;  // of the exposure, either side; 0: constant
     double noise_levels = 2.0;
+    double shot = 0.0;       // share of the variance of the noise that rises with the grey value
     double outliers = 0.1;   // share of observations that show something else
     double known_sigma = 0;  // of known exposures, EV; 0: none
 };
@@ -35,7 +47,8 @@ public:
     Video(const VideoPlan &plan, const lensprof_response &response)
         : plan_(plan), response_(response), state_(plan.seed) {
         const double loss = 1.0 - plan.corner, bend = 0.4 * random() - 0.2;  // of the profile of the falloff
-        falloff_ = {{-loss * (1.0 - bend), -loss * bend, 0.0}, {0.0, 0.0}};
+        falloff_ = {{-loss * (1.0 - bend - plan.edge), -loss * bend, -loss * plan.edge},
+                    {plan.center[0], plan.center[1]}};
         for (uint32_t i = 0; i < plan.tracks; i++) points_.push_back(appear(false));
         velocity_[0] = plan.speed, velocity_[1] = plan.speed * (0.6 * random() - 0.3);
     }
@@ -80,9 +93,16 @@ private:
         return p;
     }
 
+    void expose() {
+        const double range = plan_.ev_range;
+        if (plan_.course == Course::walk) ev_ += 0.04 * range * normal() - 0.001 * ev_;
+        if (plan_.course == Course::steps && random() < 0.03) ev_ = range * (2.0 * random() - 1.0);
+        if (plan_.course == Course::sinus) ev_ = range * std::sin(0.03 * static_cast<double>(frame_));
+        ev_ = std::clamp(ev_, -range, range);
+    }
+
     void move() {
-        ev_ += 0.04 * plan_.ev_range * normal() - 0.001 * ev_;
-        ev_ = std::clamp(ev_, -plan_.ev_range, plan_.ev_range);
+        expose();
         if (plan_.channels == 3)
             for (int c = 0; c < 3; c += 2) balance_[c] *= std::exp(0.004 * normal());
         if (plan_.motion == Motion::pan && random() < 0.005) velocity_[0] = -velocity_[0];
@@ -110,8 +130,8 @@ private:
         const double light = lensprof_vignetting_eval(&falloff_, r2, nullptr) * std::exp2(ev_);
         for (uint32_t c = 0; c < plan_.channels; c++) {
             const double l = p.is_wrong ? std::exp(-3.5 * random()) : p.radiance[c];
-            const double b = lensprof_response_eval(&response_, l * light * balance_[c], nullptr)
-                             + plan_.noise_levels / 255.0 * normal();
+            const double f = lensprof_response_eval(&response_, l * light * balance_[c], nullptr),
+                         b = f + plan_.noise_levels / 255.0 * std::sqrt(1.0 + plan_.shot * (2.0 * f - 1.0)) * normal();
             o.value[c] = static_cast<float>(std::round(std::clamp(b, 0.0, 1.0) * 1020.0) / 1020.0);  // a mean of pixels
         }
         seen_.push_back(o);

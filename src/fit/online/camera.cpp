@@ -10,6 +10,7 @@ namespace online {
 namespace {
 
 constexpr double kLeastFalloff = 1e-3, kLeastLight = 1e-9;
+constexpr double kMargin = 3.0;  // standard errors of the noise
 constexpr double kReach = 1.15;  // from the light to those of the difference that gives its second derivative
 
 double by_log_at(const double *table, double x) {
@@ -28,7 +29,8 @@ void fill_bend(Camera &camera) {
     }
 }
 
-// f with these modes; the ends stay 0 and 1.
+}  // namespace
+
 void fill_table(const Globals &globals, const Camera &camera, double *table) {
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
         table[j] = camera.first[j];
@@ -36,8 +38,6 @@ void fill_table(const Globals &globals, const Camera &camera, double *table) {
     }
     table[0] = 0.0, table[LP_CURVE_LAST] = 1.0;
 }
-
-}  // namespace
 
 Prediction predict(const Camera &camera, double log_light) {
     const double x = std::exp(std::min(log_light, 0.0));
@@ -54,6 +54,22 @@ double log_light_of(const Camera &camera, double value, Prediction *at) {
     *at = {value, inverse_slope > 0.0 ? x / inverse_slope : 0.0, place,
            static_cast<double>(camera.bend[static_cast<int>(place)])};
     return std::log(x);
+}
+
+OmittedSlope omitted_by_sigma(const State &state, const Prediction &at) {
+    OmittedSlope change = OmittedSlope::Zero();
+    if (!state.camera.modes) return change;
+    const auto j = static_cast<int>(at.place), next = std::min(j + 1, LP_CURVE_LAST);
+    for (int m = 0; m < kOmitted; m++) {
+        const double *h = lensprof_emor_table(static_cast<uint32_t>(state.camera.modes + m + 1));
+        change[m] = state.omitted_sigma[m] * (h[j] + (at.place - j) * (h[next] - h[j]));
+    }
+    return change;
+}
+
+bool is_inside(const State &state, double value, double noise) {
+    const double margin = kMargin * std::sqrt(noise);
+    return value > state.black + margin && value < state.white - margin;
 }
 
 double log_falloff_of(const Camera &camera, double r2) {

@@ -23,9 +23,19 @@ double log_light_of(const Camera &camera, double value, Prediction *at);
 // ln M at r^2; at least that of M = 0.001.
 double log_falloff_of(const Camera &camera, double r2);
 
+// Whether an observation with this expected grey value and variance of its noise counts. Those that noise takes beyond
+// black or white are missing, so that the mean of the others is wrong near both.
+bool is_inside(const State &state, double value, double noise);
+
 // Derivatives of the grey value by the globals, at a given L e.
 template <class Vector>
 void by_globals(const Camera &camera, const Prediction &at, double r2, double log_falloff, Vector &derivative);
+
+// f with these modes; the ends stay 0 and 1.
+void fill_table(const Globals &globals, const Camera &camera, double *table);
+
+// What one standard error of each mode that the fit omits adds to a grey value.
+OmittedSlope omitted_by_sigma(const State &state, const Prediction &at);
 
 // Sets the globals, and the table of the response.
 void set_globals(const Globals &globals, Camera &camera);

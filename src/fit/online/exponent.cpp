@@ -10,6 +10,10 @@ namespace {
 constexpr double kLeastKnownSigma = 0.02;  // EV, as fit/prior/gauge.hpp
 constexpr double kLargestLogGamma = 2.3;
 constexpr uint32_t kLongestStretch = 256;  // known exposures that have one offset: drift of the chain counts as another
+constexpr uint32_t kShortestStretch = 30;
+constexpr double kAboutMean =
+    1.0 / 3.0;                      // of a random walk: the variance about its mean, over the mean of the variance
+constexpr double kMostNoise = 0.5;  // share of the scatter of exposures that is taken as their errors, at most
 constexpr int kGammaSteps = 20;
 enum {
     kOne,
@@ -25,11 +29,16 @@ Moments about_mean(const Moments &moments) {
 
 }  // namespace
 
-void add_known(double ev, double sigma, double a, const Globals &slope, Exponent &exponent) {
+void add_known(double ev, double sigma, const Exposed &exposed, Exponent &exponent) {
     Eigen::Matrix<double, kMoments, 1> row;
-    row << 1.0, ev, a / kLn2, slope / kLn2;
+    row << 1.0, ev, exposed.log_exposure / kLn2, exposed.slope / kLn2;
     const double error = std::max(sigma, kLeastKnownSigma);
-    if (exponent.chain_count >= kLongestStretch) end_chain(exponent);
+    const double unit = 1.0 / (kLn2 * kLn2 * error * error), drift = exposed.chain - exponent.begun;
+    const bool drifts = exponent.chain_count > kShortestStretch && drift * unit * exponent.chain_count > 1.0;
+    if (drifts || exponent.chain_count >= kLongestStretch) end_chain(exponent);
+    if (!exponent.chain_count) exponent.begun = exposed.chain;
+    exponent.noise +=
+        unit * (exposed.own + exposed.tracks + kAboutMean * std::max(exposed.chain - exponent.begun, 0.0));
     exponent.chain += row * row.transpose() / (error * error);
     exponent.known += 1.0, exponent.chain_count++;
 }
@@ -52,7 +61,8 @@ void follow(const Globals &step, Exponent &exponent) {
 Gamma gamma_of(const Exponent &exponent) {
     Gamma gamma{0.0, exponent.log_gamma_sigma * exponent.log_gamma_sigma, Globals::Zero(), 0.0};
     const Moments sums = exponent.earlier + about_mean(exponent.chain);
-    const double aa = sums(kExposure, kExposure), ak = sums(kExposure, kKnown), kk = sums(kKnown, kKnown);
+    const double ak = sums(kExposure, kKnown), kk = sums(kKnown, kKnown), measured = sums(kExposure, kExposure),
+                 aa = measured - std::min(exponent.noise, kMostNoise * measured);
     const double freedom = exponent.known - exponent.chains - 2.0;
     if (!(aa > 0.0) || !(freedom > 0.0)) return gamma;
     const double best = ak / aa, scatter2 = std::max(kk - best * ak, 0.0) / freedom;

@@ -13,8 +13,8 @@ struct Gamma {
     double scatter;    // of known exposures, in their standard errors; 0: too few
 };
 
-// Adds a known exposure, EV, of a frame with exposure `a` (natural logarithm) in the present chain.
-void add_known(double ev, double sigma, double a, const Globals &slope, Exponent &exponent);
+// Adds a known exposure, EV, of a frame in the present chain.
+void add_known(double ev, double sigma, const Exposed &exposed, Exponent &exponent);
 
 // Ends the chain: the offset of known exposures to later ones is another.
 void end_chain(Exponent &exponent);

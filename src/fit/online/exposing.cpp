@@ -13,9 +13,24 @@ constexpr int kRounds = 12;              // of weights
 constexpr double kExposureStill = 1e-7;  // of ln exposure, at which they end
 constexpr double kFrameCutoff2 = 9.0;    // squared standard errors at which a track has half its weight
 constexpr double kOutlier2 = 16.0;       // and at which it contradicts the frame
+constexpr double kUniformAges = 3.0;     // squared mean of ages from 0 to any, over their variance
+constexpr int kTrims = 3;                // of the scale
 constexpr double kLongMemory = 60.0;     // observations that a radiance is a mean of, at most
 constexpr double kNoiseShare = 0.1;      // of a frame in the running noise
 constexpr double kLeastFrameNoise = 0.2 / 255.0;
+
+// The standard error that the median of absolute residuals implies; those beyond four of them, which are not noise,
+// are left out, because they would raise the median. 0 if they are few.
+double sigma_of(double *residuals, uint32_t count) {
+    double sigma = 0.0;
+    for (int n = 0; n < kTrims && count >= kFewest; n++) {
+        sigma = kMadToSigma * select(residuals, count, count / 2) * std::sqrt(count / (count - 1.0));
+        count = static_cast<uint32_t>(
+            std::partition(residuals, residuals + count, [&](double r) { return r * r <= kOutlier2 * sigma * sigma; })
+            - residuals);
+    }
+    return sigma;
+}
 
 }  // namespace
 
@@ -30,7 +45,7 @@ Residual Exposing::residual(uint32_t i, double a) const {
     r.residual = value(i) - r.at.value - curved;
     r.noise = state_.noise * state_.noise / weight(i);
     r.variance = r.noise + r.at.by_log * r.at.by_log * variance + 2.0 * curved * curved;
-    r.counts = is_between(r.at.value) && r.at.by_log > 0.0;
+    r.counts = is_inside(state_, r.at.value, r.noise) && r.at.by_log > 0.0;
     return r;
 }
 
@@ -81,8 +96,7 @@ void Exposing::scale(ChannelFit &fit) const {
         const Residual r = residual(i, fit.a);
         if (r.counts) values[count++] = std::abs(r.residual) / std::sqrt(r.variance);
     }
-    if (count < kFewest) return;
-    const double sigma = kMadToSigma * select(values, count, count / 2) * std::sqrt(count / (count - 1.0));
+    const double sigma = sigma_of(values, count);
     fit.scale2 = std::max(1.0, sigma * sigma);
 }
 
@@ -91,16 +105,33 @@ void Exposing::measure(ChannelFit &fit) const {
     for (uint32_t i = 0; i < count_; i++) {
         if (!is_known(i)) continue;
         const Residual r = residual(i, fit.a);
-        Light &light = lights_[memory_.seen()[i].slot];
-        light.share = 0.0f;
+        const Light &light = lights_[memory_.seen()[i].slot];
         if (!r.counts) continue;
         const double z = r.residual * r.residual / (r.variance * fit.scale2 * kFrameCutoff2);
         const double p = r.at.by_log, share = p * p / ((1.0 + z * z) * r.variance * fit.weight);
         fit.own += share * share * fit.scale2 * r.noise / (p * p);
         fit.tracks += share * share / light.information;
         fit.slope += share * (slope_of(i, r.at) - light.slope.cast<double>());
-        light.share = static_cast<float>(share);
     }
+    measure_drift(fit);
+}
+
+// An exposure e is the mean of those that its tracks saw, plus its own error, so that an error persists in all later
+// ones by 1 / their mean age. Errors that all tracks share, because they saw the same frames, cancel out: what remains
+// follows the scatter of their ages, and is complete if these are uniform.
+void Exposing::measure_drift(ChannelFit &fit) const {
+    double sum = 0.0, age = 0.0, age2 = 0.0;
+    for (uint32_t i = 0; i < count_; i++) {
+        if (!is_known(i)) continue;
+        const Residual r = residual(i, fit.a);
+        if (!r.counts) continue;
+        const double p2 = r.at.by_log * r.at.by_log, share = p2 / (r.variance * fit.weight);
+        const double mean = 0.5 * (lights_[memory_.seen()[i].slot].information * r.noise / p2 + 1.0);
+        sum += share, age += share * mean, age2 += share * mean * mean;
+    }
+    age /= sum, age2 /= sum;
+    const double scatter = kUniformAges * std::max(age2 / (age * age) - 1.0, 0.0);
+    fit.drift = fit.own / (age * age) * std::min(scatter, 1.0);
 }
 
 bool Exposing::find(ChannelFit &fit) const {
@@ -128,7 +159,7 @@ void Exposing::mark(const ChannelFit &fit) const {
         values[count++] = std::sqrt(z * weight(i) * r.noise);
     }
     if (count < kFewest) return;
-    const double noise = std::max(kMadToSigma * select(values, count, count / 2), kLeastFrameNoise);
+    const double noise = std::max(sigma_of(values, count), kLeastFrameNoise);
     state_.noise += kNoiseShare / state_.channels * (noise - state_.noise);
 }
 
@@ -143,7 +174,7 @@ double first_shift(const Prediction &at, double information) {
 
 }  // namespace
 
-void Exposing::teach(const ChannelFit &fit, double &born, double &all) const {
+void Exposing::teach(const ChannelFit &fit) const {
     for (uint32_t i = 0; i < count_; i++) {
         const Seen &seen = memory_.seen()[i];
         if (!seen.usable || seen.outlier) continue;
@@ -166,8 +197,6 @@ void Exposing::teach(const ChannelFit &fit, double &born, double &all) const {
         if (is_new) light.log_radiance -= first_shift(r.at, shown);
         light.slope += static_cast<float>(gain) * (slope.cast<float>() - light.slope);
         light.information = std::min(light.information + shown, std::max(light.information, kLongMemory * shown));
-        if (is_new) born += light.information;
-        all += light.information;
     }
 }
 

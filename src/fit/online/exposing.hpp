@@ -14,6 +14,7 @@ struct ChannelFit {
     double a = 0.0;
     double weight = 0.0;             // sum of q
     double own = 0.0, tracks = 0.0;  // variances
+    double drift = 0.0;              // variance that the chain collects by it
     double scale2 = 1.0;             // squared, of residuals in standard errors; at least 1
     uint32_t used = 0;
     Globals slope = Globals::Zero();
@@ -36,7 +37,7 @@ public:
     // False if too few tracks are known.
     bool find(ChannelFit &fit) const;
     // The measured light of a track, and its derivatives, go into the track.
-    void teach(const ChannelFit &fit, double &born, double &all) const;
+    void teach(const ChannelFit &fit) const;
     // Marks observations that contradict the fit.
     void mark(const ChannelFit &fit) const;
 
@@ -54,6 +55,7 @@ private:
     double round(ChannelFit &fit) const;
     void scale(ChannelFit &fit) const;
     void measure(ChannelFit &fit) const;
+    void measure_drift(ChannelFit &fit) const;
 
     const Memory &memory_;
     State &state_;

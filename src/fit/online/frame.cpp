@@ -14,10 +14,6 @@ namespace lensprof {
 namespace online {
 namespace {
 
-// A frame's error e enters the radiances of its new tracks, whose mean error R enters later exposures and with them
-// later tracks: R = its mean over the ages of the tracks + e. The mean age is half of a life, so that an error persists
-// with twice the share that is renewed per frame: four times the variance.
-constexpr double kRenewal = 4.0;
 constexpr uint32_t kStrikes = 3;  // frames in a row, then the track shows something else
 
 Exposing exposing(const Memory &memory, uint32_t count, uint32_t channel) {
@@ -70,23 +66,9 @@ void count_outliers(const Memory &memory, uint32_t count, Frame &record) {
         track.strikes = seen.outlier ? track.strikes + 1 : 0;
         if (track.strikes < kStrikes) continue;
         track.strikes = 0, track.window = kNone;
-        for (uint32_t c = 0; c < state.channels; c++) memory.lights(c)[seen.slot] = {0.0, 0.0, 0.0f, Slope::Zero()};
+        for (uint32_t c = 0; c < state.channels; c++) memory.lights(c)[seen.slot] = {0.0, 0.0, Slope::Zero()};
     }
     state.used += record.used, state.outliers += record.outliers;
-}
-
-// The error that a chain collects by tracks that the frame lacks: what others measure no longer averages theirs out.
-double lost_variance(const Memory &memory, uint32_t channel) {
-    const State &state = memory.state();
-    double lost = 0.0;
-    for (uint32_t t = 0; t < state.live; t++) {
-        Light &light = memory.lights(channel)[t];
-        if (memory.tracks()[t].seen == state.added || !(light.information > 0.0)) continue;
-        const auto share = static_cast<double>(light.share);
-        lost += share * share / light.information;
-        light.share = 0.0f;
-    }
-    return lost;
 }
 
 // The exposure joins the chain, and the frame teaches its tracks.
@@ -95,13 +77,11 @@ void extend_chain(const Memory &memory, const lensprof_online_frame &frame, uint
     Exposed &now = memory.exposed(state.last, channel);
     const Exposed *before = state.before == kNone ? nullptr : &memory.exposed(state.before, channel);
     now = {fit.a, state.chain[channel], fit.own, fit.tracks, 0.0, fit.slope, Globals::Zero(), 0.0};
-    double born = 0.0, all = 0.0;
-    exposing(memory, frame.count, channel).teach(fit, born, all);
+    exposing(memory, frame.count, channel).teach(fit);
     if (!before) return;
     now.step = fit.own + std::max(before->own, fit.tracks);
     now.step_slope = fit.slope - before->slope, now.log_step = fit.a - before->log_exposure;
-    const double share = all > 0.0 ? born / all : 0.0;
-    state.chain[channel] += kRenewal * share * share * fit.own;
+    state.chain[channel] += fit.drift;
 }
 
 void begin_chain(const Memory &memory, const lensprof_online_frame &frame) {
@@ -111,7 +91,7 @@ void begin_chain(const Memory &memory, const lensprof_online_frame &frame) {
     for (uint32_t t = 0; t < state.live; t++) memory.tracks()[t].window = kNone;
     for (uint32_t c = 0; c < state.channels; c++) {
         state.chain[c] = 0.0;
-        for (uint32_t t = 0; t < state.live; t++) memory.lights(c)[t] = {0.0, 0.0, 0.0f, Slope::Zero()};
+        for (uint32_t t = 0; t < state.live; t++) memory.lights(c)[t] = {0.0, 0.0, Slope::Zero()};
     }
     for (uint32_t i = 0; i < frame.count; i++) memory.seen()[i].outlier = 0;
 }
@@ -161,7 +141,6 @@ void add_frame(const Memory &memory, const lensprof_online_frame &frame) {
     const uint32_t usable = usable_count(memory, frame.count);
     record.unusable = frame.count - usable;
     ChannelFit fits[3];
-    for (uint32_t c = 0; c < state.channels; c++) state.chain[c] += kRenewal * lost_variance(memory, c);
     if (state.before != kNone && find_exposures(memory, frame, fits)) {
         record.state = LENSPROF_ONLINE_CHAINED;
         record.since = memory.frame(state.before).since, record.before = memory.frame(state.before).number;
@@ -179,7 +158,7 @@ void add_frame(const Memory &memory, const lensprof_online_frame &frame) {
         record.keyframe = keep_frame(memory, frame);
         if (frame.known_ev_sigma > 0.0) {
             const Exposed &measured = memory.exposed(state.last, state.channels == 3);
-            add_known(frame.known_ev, frame.known_ev_sigma, measured.log_exposure, measured.slope, state.exponent);
+            add_known(frame.known_ev, frame.known_ev_sigma, measured, state.exponent);
         }
     }
     forget_tracks(memory);

@@ -44,8 +44,7 @@ bool expose_again(const Memory &memory, uint32_t k, Again &again) {
         const Exposing exposing(memory, key.count, c, memory.window_lights(c));
         ChannelFit fit;
         if (k > 0 && !exposing.find(fit)) return false;
-        double born = 0.0, all = 0.0;
-        exposing.teach(fit, born, all);
+        exposing.teach(fit);
         again.a[c] = fit.a, again.slope[c] = fit.slope;
     }
     return true;
@@ -88,9 +87,7 @@ void teach_tracks(const Memory &memory, const Again &last) {
                 }
                 continue;
             }
-            const float share = light.share;
             light = memory.window_lights(c)[window];
-            light.share = share;
         }
 }
 
@@ -102,14 +99,14 @@ void replay_window(const Memory &memory) {
     const uint64_t since = state.added - memory.keyframes()[state.key_count - 1].added;
     if (!holds_chain(memory) || since > kMostSince) return;
     for (uint32_t c = 0; c < state.channels; c++)
-        std::fill_n(memory.window_lights(c), state.window_count, Light{0.0, 0.0, 0.0f, Slope::Zero()});
+        std::fill_n(memory.window_lights(c), state.window_count, Light{0.0, 0.0, Slope::Zero()});
     Again again[kMostKeyframes];
     for (uint32_t k = 0; k < state.key_count; k++)
         if (!expose_again(memory, k, again[k])) return;
     correct_frames(memory, again);
     teach_tracks(memory, again[state.key_count - 1]);
     state.exponent.chain.setZero(), state.exponent.earlier.setZero();
-    state.exponent.known = state.exponent.chains = 0.0, state.exponent.chain_count = 0;
+    state.exponent.known = state.exponent.chains = state.exponent.noise = 0.0, state.exponent.chain_count = 0;
     for (uint32_t k = 0; k < state.key_count; k++) {
         Keyframe &key = memory.keyframes()[k];
         for (uint32_t c = 0; c < state.channels; c++) {
@@ -117,7 +114,8 @@ void replay_window(const Memory &memory) {
         }
         if (key.known_sigma > 0.0) {
             const uint32_t c = state.channels == 3;
-            add_known(key.known_ev, key.known_sigma, again[k].a[c], again[k].slope[c], state.exponent);
+            const Exposed measured = {again[k].a[c], 0.0, 0.0, 0.0, 0.0, again[k].slope[c], Globals::Zero(), 0.0};
+            add_known(key.known_ev, key.known_sigma, measured, state.exponent);
         }
     }
 }

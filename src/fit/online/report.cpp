@@ -28,6 +28,8 @@ double corner_of(const Camera &camera, Globals &slope) {
     return log_m;
 }
 
+// By the scatter of the tracks, and by the modes that the fit omits. What these change by the modes of the fit is left
+// out, because it mostly cancels the former.
 double shape_variance(const State &state) {
     double largest = 0.0;
     for (double grey : kShapeGreys) {
@@ -35,7 +37,10 @@ double shape_variance(const State &state) {
         Globals slope;
         log_light_of(state.camera, grey, &at);
         by_globals(state.camera, at, 0.0, 0.0, slope);
-        largest = std::max(largest, slope.dot(state.covariance * slope));
+        const double moved = (state.moved.transpose() * slope).squaredNorm(),
+                     omitted = omitted_by_sigma(state, at).squaredNorm(),
+                     variance = slope.dot(state.covariance * slope) - moved + omitted;
+        largest = std::max(largest, variance);
     }
     return largest;
 }

@@ -10,6 +10,7 @@
 #include "fit/online/camera.hpp"
 #include "fit/online/exponent.hpp"
 #include "fit/online/keyframe.hpp"
+#include "fit/online/possible_step.hpp"
 #include "fit/online/replay.hpp"
 #include "fit/online/window.hpp"
 
@@ -26,6 +27,7 @@ constexpr int kHalvings = 12;
 struct Pin {
     Globals gradient = Globals::Zero();
     double off = 0.0;
+    OmittedSlope omitted = OmittedSlope::Zero();  // of the modes that the fit omits, per standard error
 };
 
 Pin pin_of(const State &state) {
@@ -34,6 +36,7 @@ Pin pin_of(const State &state) {
     double by_mode[LENSPROF_EMOR_MODES];
     pin.off = state.exponent.position - lp_gauge_position(state.camera.table, by_mode);
     for (int l = 0; l < state.camera.modes; l++) pin.gradient[l] = by_mode[l];
+    for (int m = 0; m < kOmitted; m++) pin.omitted[m] = state.omitted_sigma[m] * by_mode[state.camera.modes + m];
     return pin;
 }
 
@@ -66,20 +69,34 @@ void follow_all(const Memory &memory, const Globals &step) {
     state.has_moved = 1;
 }
 
-// Standard errors by the scatter of the tracks' pulls (sandwich): those of one track may have a common error.
-void set_covariance(const Memory &memory, const Pin &pin, const Window &window) {
-    State &state = memory.state();
+// What the errors of a converged window follow from.
+struct Shown {
+    GlobalMatrix inverse;  // of the precision of all that is known
+    GlobalMatrix scatter;
+    Omitted omitted;
+};
+
+Shown shown_by(const State &state, const Pin &pin, const Window &window) {
     const GlobalMatrix hold = kPinned * pin.gradient * pin.gradient.transpose();
     const GlobalMatrix inverse = (state.prior.precision + window.precision() + hold).inverse();
-    state.covariance = inverse * (state.scatter + window.scatter() + hold) * inverse;
+    return {inverse, window.scatter(inverse), window.omitted()};
+}
+
+// Standard errors by the scatter of the tracks' pulls (sandwich): those of one track may have a common error. Modes
+// that the fit omits add theirs, which all tracks have in common.
+void set_covariance(const Pin &pin, const Shown &shown, State &state) {
+    const GlobalMatrix hold = kPinned * pin.gradient * pin.gradient.transpose();
+    state.moved = shown.inverse * (state.omitted + shown.omitted + kPinned * pin.gradient * pin.omitted.transpose());
+    state.covariance =
+        shown.inverse * (state.scatter + shown.scatter + hold) * shown.inverse + state.moved * state.moved.transpose();
 }
 
 // The window becomes prior knowledge: its cost is quadratic about the present globals.
-void drop_window(const Memory &memory, const Window &window) {
+void drop_window(const Memory &memory, const Window &window, const Shown &shown) {
     State &state = memory.state();
     state.prior.precision += window.precision();
     state.prior.weighted += window.precision() * state.camera.globals + window.pull();
-    state.scatter += window.scatter();
+    state.scatter += shown.scatter, state.omitted += shown.omitted;
     state.windows++;
     clear_window(memory);
 }
@@ -101,13 +118,14 @@ void take_step(const Memory &memory) {
         state.prior.precision + window.precision() + kPinned * pin.gradient * pin.gradient.transpose();
     const Globals pull = state.prior.weighted - state.prior.precision * state.camera.globals + window.pull()
                          + kPinned * pin.off * pin.gradient;
-    const Globals best = total.llt().solve(pull), step = possible(best, state.camera);
+    const Globals step = possible(possible_step(state.camera, total.inverse(), pull), state.camera);
     const bool is_converged = step.dot(total * step) < kStill || ++state.steps >= kMostSteps;
     if (is_converged) {
-        set_covariance(memory, pin, window);
+        const Shown shown = shown_by(state, pin, window);
+        set_covariance(pin, shown, state);
         state.is_still = 1;
         if (state.windows == 0 && state.has_moved) replay_window(memory);
-        if (is_full(memory)) drop_window(memory, window);
+        if (is_full(memory)) drop_window(memory, window, shown);
         return;
     }
     set_globals(state.camera.globals + step, state.camera);

@@ -20,7 +20,9 @@ namespace {
 constexpr double kFirstNoise = 3.0 / 255.0;
 constexpr double kLeastScatter = 0.05;   // of a mode, of its scatter over all cameras: modes that a few curves lack
 constexpr double kProfileScatter = 0.2;  // the same of a profile without a covariance
-constexpr double kProfileGamma = 0.05;   // standard error of ln gamma of a profile that states none
+constexpr int kFalloffRadii = 64;
+constexpr double kMostExponent = 0.99;  // share of a variance that the error of the exponent may be
+constexpr double kProfileGamma = 0.05;  // standard error of ln gamma of a profile that states none
 
 size_t aligned(size_t bytes) { return (bytes + 15) / 16 * 16; }
 
@@ -56,8 +58,27 @@ void take_response(const lensprof_profile &profile, FirstCamera &first) {
     first.log_gamma_sigma = sigma > 0.0 ? sigma : kProfileGamma;
 }
 
+// Change of k1..k3 by that of ln gamma, which raises M: the fit of M ln M by powers of r^2.
+Eigen::Vector3d by_log_gamma(const lensprof_vignetting &falloff) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (int i = 1; i <= kFalloffRadii; i++) {
+        const double r2 = static_cast<double>(i) / kFalloffRadii,
+                     m = std::max(lensprof_vignetting_eval(&falloff, r2, nullptr), 1e-3);
+        const Eigen::Vector3d powers(r2, r2 * r2, r2 * r2 * r2);
+        normal += powers * powers.transpose(), right += m * std::log(m) * powers;
+    }
+    return normal.inverse() * right;
+}
+
+// The covariance at a given exponent, whose error is accounted for elsewhere.
+void remove_exponent(const Eigen::Vector3d &slope, double sigma, Eigen::Matrix3d &covariance) {
+    const double share = sigma * sigma * slope.dot(covariance.inverse() * slope);
+    if (share > 0.0) covariance -= std::min(1.0, kMostExponent / share) * sigma * sigma * slope * slope.transpose();
+}
+
 // k1..k3 of the profile, and their covariance.
-void take_falloff(const lensprof_profile &profile, Knowledge &knowledge) {
+void take_falloff(const lensprof_profile &profile, double log_gamma_sigma, Knowledge &knowledge) {
     const Eigen::Map<const Eigen::Vector3d> k(profile.vignetting[0].k);
     const uint32_t n = profile.covariance_size,
                    at = lp_covariance_index(lp_covariance_modes(profile.response, profile.responses), 0);
@@ -66,6 +87,7 @@ void take_falloff(const lensprof_profile &profile, Knowledge &knowledge) {
         for (uint32_t i = 0; i < 3; i++)
             for (uint32_t j = 0; j < 3; j++)
                 covariance(i, j) = profile.covariance[(at + i) * n + at + j] + (i == j ? 1e-8 : 0.0);
+    remove_exponent(by_log_gamma(profile.vignetting[0]), log_gamma_sigma, covariance);
     const Eigen::Matrix3d precision = covariance.inverse();
     knowledge.precision.block<3, 3>(kModes, kModes) = precision;
     knowledge.weighted.segment<3>(kModes) = precision * k;
@@ -117,10 +139,16 @@ void begin_camera(const lensprof_online_options &options, State &state) {
     std::copy_n(options.center, 2, state.camera.center);
     if (options.profile) {
         std::copy_n(options.profile->vignetting[0].center, 2, state.camera.center);
-        take_falloff(*options.profile, state.prior);
+        take_falloff(*options.profile, is_linear ? 0.0 : std::max(options.profile->provenance.gamma_sigma, 0.0),
+                     state.prior);
         if (!is_linear) take_response(*options.profile, first);
     } else {
         expect_falloff(state.prior);
+    }
+    for (int m = 0; m < kOmitted; m++) {
+        const int l = static_cast<int>(options.modes) + m;
+        state.omitted_sigma[m] = std::hypot(std::sqrt(std::max(covariance[l * (LENSPROF_EMOR_MODES + 1)], 0.0)),
+                                            kLeastScatter * kEmorSigma[l]);
     }
     take_modes(first, is_linear ? 0 : static_cast<int>(options.modes), state);
     state.scatter = state.prior.precision;
@@ -171,6 +199,7 @@ void begin(const lensprof_online_options &options, State &state) {
     state.layout = layout_of(options);
     state.prior.precision.setZero(), state.prior.weighted.setZero();
     state.exponent.chain.setZero(), state.exponent.earlier.setZero();
+    state.omitted.setZero(), state.moved.setZero();
     state.noise = kFirstNoise;
     state.last = state.before = kNone;
     state.is_still = 1;

@@ -23,6 +23,11 @@ using Globals = Eigen::Matrix<double, kGlobals, 1, Eigen::DontAlign>;
 using GlobalMatrix = Eigen::Matrix<double, kGlobals, kGlobals, Eigen::DontAlign>;
 using Slope = Eigen::Matrix<float, kGlobals, 1, Eigen::DontAlign>;
 
+// EMoR modes after those of the fit: the errors state what they would change.
+constexpr int kOmitted = 8;
+using Omitted = Eigen::Matrix<double, kGlobals, kOmitted, Eigen::DontAlign>;
+using OmittedSlope = Eigen::Matrix<double, kOmitted, 1>;
+
 constexpr int kMostKeyframes = LENSPROF_ONLINE_KEYFRAMES;
 constexpr int32_t kNone = -1;
 
@@ -59,7 +64,6 @@ struct Track {
 struct Light {
     double log_radiance;
     double information;  // inverse variance given the exposures; 0: not known
-    float share;         // of the track in the last exposure
     Slope slope;         // of ln L by the globals
 };
 
@@ -113,6 +117,8 @@ struct Exponent {
     Moments chain, earlier;  // of this chain; of earlier ones, about the mean of each
     double known;            // number of known exposures
     double chains;           // earlier chains, or stretches of them, that have known exposures
+    double noise;            // weighted sum of the variances of a
+    double begun;            // variance of the chain at its first known exposure
     uint32_t chain_count;    // known exposures of this one
     uint32_t reserved;
 };
@@ -131,6 +137,9 @@ struct State {
     Camera camera;
     Knowledge prior;       // of what was dropped, and of what was known to begin with
     GlobalMatrix scatter;  // of the scores of its tracks, plus the first precision
+    Omitted omitted;       // what the modes that the fit omits pull on the globals, per standard error of each,
+    Omitted moved;         // and how much that moves them: part of the covariance
+    double omitted_sigma[kOmitted];
     GlobalMatrix covariance;
     Exponent exponent;
     uint64_t added, lost, chains, kept_keyframes, kept_observations, windows;

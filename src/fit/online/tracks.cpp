@@ -53,7 +53,7 @@ void forget_all_tracks(const Memory &memory) {
 int32_t add_track(const Memory &memory, uint64_t id) {
     const uint32_t track = memory.state().live++;
     memory.tracks()[track] = {id, 0, {0.0f, 0.0f}, 0, kNone, 0, 0};
-    for (uint32_t c = 0; c < memory.state().channels; c++) memory.lights(c)[track] = {0.0, 0.0, 0.0f, Slope::Zero()};
+    for (uint32_t c = 0; c < memory.state().channels; c++) memory.lights(c)[track] = {0.0, 0.0, Slope::Zero()};
     memory.slots()[place_of(memory, id)] = static_cast<int32_t>(track);
     return static_cast<int32_t>(track);
 }

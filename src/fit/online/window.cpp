@@ -15,8 +15,9 @@ namespace {
 
 constexpr double kWindowCutoff2 = 16.0;  // squared standard errors at which an observation has half its weight
 constexpr double kLeastWindowNoise = 0.2 / 255.0;
-constexpr double kHeld = 1e12;   // precision of the exposure that the others refer to
-constexpr double kLoose = 1e-3;  // precision of exposures without observations
+constexpr double kHeld = 1e12;      // precision of the exposure that the others refer to
+constexpr double kLoose = 1e-3;     // precision of exposures without observations
+constexpr double kLeverage = 0.02;  // share of all information from which leaving out a track changes its pull
 constexpr int kRadianceSteps = 3;
 
 // The observations of one track in one channel, at its best radiance.
@@ -32,10 +33,23 @@ struct TrackEquations {
         : exposures(Exposures::Zero(keyframes)),
           pulls(Exposures::Zero(keyframes)),
           mixed(MixedMatrix::Zero(keyframes, kGlobals)) {}
+    // The precision of the globals once ln L follows them.
+    GlobalMatrix own_precision() const { return both - globals * (globals.transpose() / radiance); }
+    // The same once, by `follow`, the exposures follow them.
+    GlobalMatrix net_precision(const MixedMatrix &follow) const {
+        const double unit = 1.0 / radiance;
+        const MixedMatrix net_mixed = mixed - exposures * (unit * globals.transpose());
+        ExposureMatrix own = -exposures * (unit * exposures.transpose());
+        own.diagonal() += exposures;
+        const GlobalMatrix cross = net_mixed.transpose() * follow;
+        return own_precision() - cross - cross.transpose() + follow.transpose() * own * follow;
+    }
     // The pulls on globals and exposures once ln L follows them.
     Globals net_globals() const { return global_pull - globals * (pull / radiance); }
     Exposures net_exposures() const { return pulls - exposures * (pull / radiance); }
 };
+
+using OmittedMixed = Eigen::Matrix<double, Eigen::Dynamic, kOmitted, 0, kMostKeyframes, kOmitted>;
 
 class TrackView {
 public:
@@ -63,9 +77,9 @@ public:
             o.log_falloff = log_falloff_of(camera_, static_cast<double>(s.r2));
             const double a = memory_.keyframes()[s.keyframe].log_exposure[channel_];
             o.at = predict(camera_, track_.log_radiance[channel_] + a + o.log_falloff);
-            if (!(o.at.value > state.black && o.at.value < state.white) || !(o.at.by_log > 0.0)) continue;
-            o.residual = static_cast<double>(s.value[channel_]) - o.at.value;
             const double unit = static_cast<double>(s.weight) / (noise_ * noise_);
+            if (!is_inside(state, o.at.value, 1.0 / unit) || !(o.at.by_log > 0.0)) continue;
+            o.residual = static_cast<double>(s.value[channel_]) - o.at.value;
             const double z = o.residual * o.residual * unit / kWindowCutoff2;
             o.weight = unit / (1.0 + z * z);
             use(o);
@@ -84,7 +98,10 @@ public:
     }
 
     void equations(TrackEquations &track) const {
-        each([&](const Observed &o) {
+        double precision = 0.0;
+        each([&](const Observed &o) { precision += o.weight * o.at.by_log * o.at.by_log; });
+        each([&](Observed o) {
+            o.residual += 0.5 * o.at.bend / precision;  // f is expected at a radiance that has an error
             Globals slope;
             by_globals(camera_, o.at, static_cast<double>(o.sighting->r2), o.log_falloff, slope);
             const double p = o.at.by_log, wp = o.weight * p;
@@ -172,7 +189,37 @@ void Window::move_exposures(const Globals &step) const {
     }
 }
 
-GlobalMatrix Window::scatter() const {
+Omitted Window::omitted() const {
+    const State &state = memory_.state();
+    Omitted pulls = Omitted::Zero();
+    for (uint32_t c = 0; c < state.channels; c++) {
+        const MixedMatrix follow = channels_[c].exposures * channels_[c].mixed;
+        OmittedMixed mixed = OmittedMixed::Zero(keyframes_, kOmitted);
+        for (uint32_t t = 0; t < state.window_count; t++) {
+            if (!is_checkable(memory_.window_tracks()[t])) continue;
+            const TrackView view(memory_, t, c, noise_);
+            double radiance = 0.0;
+            OmittedSlope mean = OmittedSlope::Zero();
+            view.each([&](const TrackView::Observed &o) {
+                radiance += o.weight * o.at.by_log * o.at.by_log;
+                mean += (o.weight * o.at.by_log) * omitted_by_sigma(state, o.at);
+            });
+            if (!(radiance > 0.0)) continue;
+            mean /= radiance;
+            view.each([&](const TrackView::Observed &o) {
+                const OmittedSlope net = omitted_by_sigma(state, o.at) - o.at.by_log * mean;
+                Globals slope;
+                by_globals(state.camera, o.at, static_cast<double>(o.sighting->r2), o.log_falloff, slope);
+                pulls += (o.weight * slope) * net.transpose();
+                mixed.row(static_cast<int>(o.sighting->keyframe)) += (o.weight * o.at.by_log) * net.transpose();
+            });
+        }
+        pulls -= follow.transpose() * mixed;
+    }
+    return pulls;
+}
+
+GlobalMatrix Window::scatter(const GlobalMatrix &inverse) const {
     GlobalMatrix scatter = GlobalMatrix::Zero();
     for (uint32_t c = 0; c < memory_.state().channels; c++) {
         const MixedMatrix follow = channels_[c].exposures * channels_[c].mixed;
@@ -182,7 +229,12 @@ GlobalMatrix Window::scatter() const {
             TrackView(memory_, t, c, noise_).equations(track);
             if (!(track.radiance > 0.0)) continue;
             const Globals pull = track.net_globals() - follow.transpose() * track.net_exposures();
-            scatter += pull * pull.transpose();
+            const GlobalMatrix alone = track.own_precision();
+            Globals left_out = pull;
+            if (alone.cwiseProduct(inverse).sum() > kLeverage)
+                left_out =
+                    (GlobalMatrix::Identity() - track.net_precision(follow) * inverse).partialPivLu().solve(pull);
+            scatter += left_out * left_out.transpose();
         }
     }
     return scatter;

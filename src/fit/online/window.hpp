@@ -32,8 +32,11 @@ public:
     // Follows a step of the globals with the exposures.
     void move_exposures(const Globals &step) const;
 
+    // What modes that the fit omits pull on the globals, per standard error of each.
+    Omitted omitted() const;
+
     // Sum over tracks of the squares of their pulls on the globals: the scatter of the total, whatever the noise.
-    GlobalMatrix scatter() const;
+    GlobalMatrix scatter(const GlobalMatrix &inverse) const;
 
 private:
     void weigh();
