@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -69,6 +70,7 @@ private:
     std::string what_, text_, step_;
     TimeLeft left_;
     std::chrono::steady_clock::time_point step_begin_;
+    std::clock_t step_cpu_begin_ = 0;  // of all threads
     std::chrono::steady_clock::time_point drawn_;
     std::mutex mutex_;
 };
