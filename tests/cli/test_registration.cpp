@@ -149,7 +149,8 @@ void test_pinhole(void **) {
             for (double &r : c.radial) r = n % 4 ? 0.15 * uniform(random) : 0.0;
             if (n % 3 == 0) std::generate_n(c.translation, 3, [&] { return 0.4 * uniform(random); });
         }
-        const double x = 0.5 * kWidth * (1.0 + 1.2 * uniform(random)), y = 0.5 * kHeight * (1.0 + 1.2 * uniform(random));
+        const double x = 0.5 * kWidth * (1.0 + 1.2 * uniform(random)),
+                     y = 0.5 * kHeight * (1.0 + 1.2 * uniform(random));
         double direction[2], xy[2];
         const bool is_seen = lensprof_camera_unproject(&camera[0], x, y, direction)
                              && lensprof_camera_project(&camera[1], direction[0], direction[1], xy);

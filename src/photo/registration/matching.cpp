@@ -27,7 +27,7 @@ constexpr int max_draws = 3000;       // of four matches for a homography
 constexpr int max_rounds = 5;         // of matching: links found determine the next candidates
 constexpr int quick_features = 1000;
 constexpr size_t plenty_matches = 100;  // of the largest features, which suffice for a link then
-constexpr uint32_t max_revisits = 2;  // pictures most like one, of those that are not near by links
+constexpr uint32_t max_revisits = 2;    // pictures most like one, of those that are not near by links
 
 enum class Effort {
     quick,
@@ -291,7 +291,8 @@ bool turn_only(const std::vector<std::pair<Features, Features>> &neighbours) {
         matches += matched.moved.size();
         if (const auto found = link_by({0, 1}, matched.moved, matched.longer_side)) follow += found->matches.size();
     }
-    return follow >= plenty_matches * neighbours.size() && static_cast<double>(follow) > share_of_turn * double(matches);
+    return follow >= plenty_matches * neighbours.size()
+           && static_cast<double>(follow) > share_of_turn * double(matches);
 }
 
 std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links, const TakesLink &takes) {

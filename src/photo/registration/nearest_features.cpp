@@ -89,9 +89,8 @@ struct Avx512 {
     static constexpr int lanes = 16, rows_at_once = 8;
     static constexpr __mmask16 all = 0xffff;
 
-    __attribute__((target("avx512f,avx512vnni"))) static void find(const int32_t (*rows)[elements],
-                                                                   const std::vector<int32_t> &packed,
-                                                                   InLanes<lanes> *found) {
+    __attribute__((target("avx512f,avx512vnni"))) static void
+    find(const int32_t (*rows)[elements], const std::vector<int32_t> &packed, InLanes<lanes> *found) {
         __m512i best[rows_at_once], next[rows_at_once], group_of_best[rows_at_once];
         for (int r = 0; r < rows_at_once; r++) best[r] = next[r] = group_of_best[r] = _mm512_set1_epi32(-1);
         const int groups = static_cast<int>(packed.size()) / (lanes * elements);

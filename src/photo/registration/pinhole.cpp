@@ -9,10 +9,12 @@
 namespace lensprof {
 
 Pinhole::Pinhole(const lensprof_camera &camera)
-    : turn_(turn_of(camera)), place_(camera.translation[0], camera.translation[1], -camera.translation[2]),
+    : turn_(turn_of(camera)),
+      place_(camera.translation[0], camera.translation[1], -camera.translation[2]),
       centre_(0.5 * camera.width - 0.5, 0.5 * camera.height - 0.5),
       focal_(camera.width / (2.0 * std::tan(camera.hfov_deg * M_PI / 360.0))),
-      half_side_(0.5 * std::min(camera.width, camera.height)), is_moved_(!place_.isZero(0.0)) {
+      half_side_(0.5 * std::min(camera.width, camera.height)),
+      is_moved_(!place_.isZero(0.0)) {
     const double *radial = camera.radial;
     std::copy_n(radial, 3, radial_);
     radial_[3] = 1.0 - radial[0] - radial[1] - radial[2];

@@ -24,8 +24,8 @@ public:
     bool project(const Eigen::Vector3d &direction, Eigen::Vector2d &xy) const;
 
 private:
-    double scale_at(double r) const;      // of a distance r from the axis, half of the shorter side = 1
-    double undistorted(double r) const;   // negative if there is no such distance
+    double scale_at(double r) const;     // of a distance r from the axis, half of the shorter side = 1
+    double undistorted(double r) const;  // negative if there is no such distance
     double slope(double r) const;
     double end_of_rise() const;
 
@@ -33,7 +33,7 @@ private:
     Eigen::Vector3d place_;
     Eigen::Vector2d centre_;
     double focal_ = 1.0, half_side_ = 1.0, radial_[4] = {};  // the coefficients of r^4, r^3, r^2 and r
-    double rises_to_ = 0.0;                                   // the distance up to which the distortion rises
+    double rises_to_ = 0.0;                                  // the distance up to which the distortion rises
     bool is_moved_ = false, is_distorted_ = false;
 };
 
