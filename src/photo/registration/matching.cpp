@@ -299,7 +299,7 @@ std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> 
     std::vector<uint32_t> first(pictures);
     std::iota(first.begin(), first.end(), 0u);
     const auto root = [&](uint32_t i) {
-        while (first[i] != i) i = first[i];
+        while (first[i] != i) i = first[i] = first[first[i]];
         return i;
     };
     for (const PictureLink &link : links) {
