@@ -39,7 +39,7 @@ def parse():
     p.add_argument("--match", metavar="TEXT", default="",
                    help="only accuracy cases with TEXT in the name of their row; verdicts, cards, trials: one kind, or one case"
                         " such as smooth 17; reconstruction: sets, separated by commas: terrain, room, drone, and real"
-                        " ones")
+                        " ones; frames-registration: parts of names, separated by commas: walk, object")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="parallel cases (accuracy only)")
     p.add_argument("--sequences", type=int, metavar="N", help="sequences of the part knowledge (default 60, quick 20)")
@@ -109,7 +109,7 @@ def main():
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
                                                  options.jobs, say)
     if "frames-registration" in options.only:
-        results["frames"] = frames.run_all(options.quick, say)
+        results["frames"] = frames.run_all(options.quick, video.photographs_of(options.real), options.match, say)
     if "photographs" in options.only:
         results["photographs"] = photographs.run_all(options.real, options.quick, say)
         results["moving"] = photographs.run_moving(options.real, say)

@@ -477,15 +477,18 @@ def moving(records):
 
 
 def of_frames(records):
-    """Registration of the frames of a pan."""
+    """Registration of frames and views."""
     if not records:
         return []
-    lines = ["## Frames of a pan", "", "`build` on rendered frames of 640 x 360: CPU time of the whole command, wall time"
-             " of the registration, and CPU time of COLMAP's feature_extractor and sequential_matcher.", ""]
-    lines += header("frames", "joined", "links", "CPU, s", "CPU per frame, s", "registration wall, s", "memory, MB", "COLMAP CPU, s")
+    lines = ["## Frames of a camera that turns or moves", "", "`build` on rendered pictures: CPU time of its registration,"
+             " per picture, and of the whole command; CPU time of COLMAP's feature_extractor and sequential_matcher.", ""]
+    lines += header("pictures", "number", "joined", "links", "registration CPU, s", "CPU per picture, s", "whole CPU, s",
+                    "memory, MB", "COLMAP CPU, s")
     for r in records:
-        lines.append(row(r["pictures"], r["joined"], r["links"], number(r["cpu_s"]), number(r["cpu_s"] / r["pictures"]),
-                         number(sum(r["steps"].values())), number(r["peak_mb"]), number(r.get("colmap_cpu_s"))))
+        registered = sum(r["steps"].values())
+        lines.append(row(r["name"], r["pictures"], r["joined"], r["links"], number(registered),
+                         number(registered / r["pictures"]), number(r["cpu_s"]), number(r["peak_mb"]),
+                         number(r.get("colmap_cpu_s"))))
     return lines + [""]
 
 

@@ -150,7 +150,7 @@ void test_quiet_and_verbose(void **) {
     assert_string_equal(silent.err.c_str(), "");
     for (const Outcome *outcome : {&silent, &verbose})  // the table; the time differs
         assert_string_equal(outcome->out.substr(0, 400).c_str(), normal.out.substr(0, 400).c_str());
-    for (const char *part : {"warning: ", "lensprof: sampling: ", "lensprof: fitting: ", " MB of memory"})
+    for (const char *part : {"warning: ", "lensprof: sampling: ", "lensprof: fitting: ", " s, CPU ", " MB of memory"})
         assert_true(contains(verbose.err, part));
     assert_false(contains(normal.err + verbose.err, "\x1b"));  // not a terminal
     assert_refused(usage, build + Words{"-q", "-v"}, {"--quiet and --verbose exclude each other"});

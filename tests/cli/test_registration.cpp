@@ -11,6 +11,7 @@
 #include "photo/registration/copies.hpp"
 #include "photo/registration/matching.hpp"
 #include "photo/registration/nearest_features.hpp"
+#include "photo/registration/pinhole.hpp"
 extern "C" {
 #include "support.h"
 }
@@ -135,10 +136,42 @@ void test_a_camera_that_moved_over_a_plane(void **) {
     assert_true(sum / double(found.link_residuals.size()) < 0.001);
 }
 
+// The same pixels as by the model of geometry.h, for turned and moved cameras with distortion, seen or not.
+void test_pinhole(void **) {
+    std::mt19937 random(21);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    int projected = 0, lost = 0;
+    for (int n = 0; n < 400; n++) {
+        lensprof_camera camera[2];
+        for (lensprof_camera &c : camera) {
+            c = camera_at(60.0 * uniform(random), 30.0 * uniform(random), 70.0 + 40.0 * uniform(random));
+            c.roll_deg = 180.0 * uniform(random);
+            for (double &r : c.radial) r = n % 4 ? 0.15 * uniform(random) : 0.0;
+            if (n % 3 == 0) std::generate_n(c.translation, 3, [&] { return 0.4 * uniform(random); });
+        }
+        const double x = 0.5 * kWidth * (1.0 + 1.2 * uniform(random)),
+                     y = 0.5 * kHeight * (1.0 + 1.2 * uniform(random));
+        double direction[2], xy[2];
+        const bool is_seen = lensprof_camera_unproject(&camera[0], x, y, direction)
+                             && lensprof_camera_project(&camera[1], direction[0], direction[1], xy);
+        const Pinhole first(camera[0]), second(camera[1]);
+        Eigen::Vector3d ray, seen;
+        Eigen::Vector2d found;
+        assert_int_equal(first.ray(x, y, ray) && first.seen(ray, seen) && second.project(seen, found), is_seen);
+        if (!is_seen) {
+            lost++;
+            continue;
+        }
+        projected++;
+        assert_true(std::hypot(found.x() - xy[0], found.y() - xy[1]) < 1e-7 * (1.0 + std::hypot(xy[0], xy[1])));
+    }
+    assert_true(projected > 100 && lost > 100);
+}
+
 // Every processor finds the same, for any number of rows and with equal ones.
 void test_nearest_features(void **) {
     std::mt19937 random(11);
-    for (const auto &[count_a, count_b] : {std::pair(1, 1), {3, 2}, {4, 16}, {9, 17}, {30, 203}}) {
+    for (const auto &[count_a, count_b] : {std::pair(1, 1), {3, 2}, {4, 16}, {9, 17}, {17, 33}, {30, 203}}) {
         std::vector<int16_t> a, b;
         for (int i = 0; i < count_a * descriptor_length; i++) a.push_back(static_cast<int16_t>(random() % 2800));
         for (int i = 0; i < count_b * descriptor_length; i++) b.push_back(static_cast<int16_t>(random() % 2800));
@@ -265,6 +298,22 @@ void test_links_of_many(void **) {
         assert_true(pairs.size() <= all);
         assert_true(pairs == links_of(ring, own));
     }
+}
+
+// Neighbours of the ring match under one homography. Not so where every other point is nearer and moves more.
+void test_neighbours_of_a_camera_that_turned(void **) {
+    const Ring ring;
+    std::vector<std::pair<Features, Features>> neighbours, moved;
+    for (uint32_t i = 0; i < 4; i++) neighbours.emplace_back(ring.pictures[i], ring.pictures[i + 1]);
+    moved = neighbours;
+    for (auto &[first, second] : moved) {
+        std::mt19937 random(2);
+        for (cv::Point2d &place : second.places) place.x += random() % 2 ? 40.0 + double(random() % 200) : 0.0;
+    }
+    assert_true(turn_only(neighbours));
+    assert_false(turn_only(moved));
+    for (auto &[first, second] : neighbours) second = ring.pictures[Ring::kPictures];
+    assert_false(turn_only(neighbours));
 }
 
 // A sequence is linked with growing distance, where it is linked half way; a picture with enough links needs no more.
@@ -401,9 +450,11 @@ int main() {
         cmocka_unit_test(test_a_camera_that_turned),
         cmocka_unit_test(test_metadata_are_a_first_guess),
         cmocka_unit_test(test_a_camera_that_moved_over_a_plane),
+        cmocka_unit_test(test_pinhole),
         cmocka_unit_test(test_nearest_features),
         cmocka_unit_test(test_candidates),
         cmocka_unit_test(test_links_of_many),
+        cmocka_unit_test(test_neighbours_of_a_camera_that_turned),
         cmocka_unit_test(test_candidates_of_a_sequence),
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_turned_copies),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 
 #include <unistd.h>
@@ -75,6 +76,7 @@ void Progress::draw(const std::string &what, double fraction, const std::functio
         end_step();
         step_ = what;
         step_begin_ = now;
+        step_cpu_begin_ = std::clock();
     }
     if (!is_shown_) return;
     int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
@@ -104,7 +106,8 @@ void Progress::clear_line() {
 void Progress::end_step() {
     if (verbosity_ == Verbosity::verbose && !step_.empty()) {
         clear_line();
-        err_ << "lensprof: " << step_ << format(": %.2f s", seconds_since(step_begin_)) << std::endl;
+        const double cpu = static_cast<double>(std::clock() - step_cpu_begin_) / CLOCKS_PER_SEC;
+        err_ << "lensprof: " << step_ << format(": %.2f s, CPU %.2f s", seconds_since(step_begin_), cpu) << std::endl;
     }
     step_.clear();
 }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <mutex>
 #include <ostream>
@@ -69,6 +70,7 @@ private:
     std::string what_, text_, step_;
     TimeLeft left_;
     std::chrono::steady_clock::time_point step_begin_;
+    std::clock_t step_cpu_begin_ = 0;  // of all threads
     std::chrono::steady_clock::time_point drawn_;
     std::mutex mutex_;
 };

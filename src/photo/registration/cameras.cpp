@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <queue>
+#include <tuple>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -11,6 +14,7 @@
 #include "fit/base/quantile.hpp"
 #include "photo/base/events.hpp"
 #include "photo/registration/camera_rotation.hpp"
+#include "photo/registration/pinhole.hpp"
 #include "threads/item_loop.hpp"
 
 namespace lensprof {
@@ -66,18 +70,31 @@ constexpr double known_hfov = 0.05, unknown_hfov = 0.6, usual_hfov_deg = 45.0;  
 constexpr double expected_sigmas[camera_unknowns] = {0.0, 0.02, 0.05, 0.02, 1e4, 1e4, 1e4, 1.0, 1.0, 1.0};
 
 // Distance of a point in this direction from its position in the second picture, px.
-bool residual(const lensprof_camera &second, const double direction[2], const Match &match, Eigen::Vector2d &r) {
-    if (!lensprof_camera_project(&second, direction[0], direction[1], r.data())) return false;
+bool residual(const Pinhole &second, const Eigen::Vector3d &direction, const Match &match, Eigen::Vector2d &r) {
+    if (!second.project(direction, r)) return false;
     r -= Eigen::Vector2d(match.second.x, match.second.y);
     return true;
 }
 
 // The same of a point seen by the first camera.
-bool residual(const lensprof_camera &first, const lensprof_camera &second, const Match &match, Eigen::Vector2d &r) {
-    double direction[2];
-    return lensprof_camera_unproject(&first, match.first.x, match.first.y, direction)
+bool residual(const Pinhole &first, const Pinhole &second, const Match &match, Eigen::Vector2d &r) {
+    Eigen::Vector3d ray, direction;
+    return first.ray(match.first.x, match.first.y, ray) && first.seen(ray, direction)
            && residual(second, direction, match, r);
 }
+
+// A camera, and with each of its unknowns moved by its difference step.
+struct Nearby {
+    Pinhole at, moved[camera_unknowns];
+
+    explicit Nearby(const lensprof_camera &camera) : at(camera) {
+        for (Eigen::Index k = 0; k < camera_unknowns; k++) {
+            lensprof_camera other = camera;
+            value(other, k) += difference_steps[k];
+            moved[k] = Pinhole(other);
+        }
+    }
+};
 
 class CameraFit {
 public:
@@ -113,7 +130,9 @@ private:
     double expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen::VectorXd *right) const;
     double cost(double scale, size_t link_step = 1) const;
     Part part_of(size_t link) const;
-    void add_match(size_t link, const Match &match, double scale, Part &part) const;
+    std::vector<Pinhole> pinholes() const { return {cameras_.begin(), cameras_.end()}; }
+    void add_match(size_t link, const Match &match, double scale, const Nearby &first, const Nearby &second,
+                   Part &part) const;
     void add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const;
     void move(const Eigen::VectorXd &step);
     bool step(double scale, double &damping);
@@ -139,26 +158,29 @@ private:
     Eigen::Index columns_ = 0;
 };
 
-// The tree of the strongest links, starting at the picture with most matches.
+// The tree of the strongest links, starting at the picture with most matches (Prim 1957); of equal ones the first.
 void CameraFit::find_order() {
     std::vector<size_t> strength(pictures_.size());
-    for (const PictureLink &link : links_)
-        for (uint32_t p : link.picture) strength[p] += link.matches.size();
+    std::vector<std::vector<size_t>> of_picture(pictures_.size());
+    for (size_t n = 0; n < links_.size(); n++)
+        for (uint32_t p : links_[n].picture) strength[p] += links_[n].matches.size(), of_picture[p].push_back(n);
     root_ = static_cast<size_t>(std::max_element(strength.begin(), strength.end()) - strength.begin());
     std::vector<bool> joined(pictures_.size());
-    joined[root_] = true;
-    for (;;) {
-        size_t best = links_.size();
-        for (size_t n = 0; n < links_.size(); n++) {
-            const auto &p = links_[n].picture;
-            if (joined[p[0]] != joined[p[1]]
-                && (best == links_.size() || links_[n].matches.size() > links_[best].matches.size()))
-                best = n;
-        }
-        if (best == links_.size()) return;
+    const auto is_weaker = [&](size_t a, size_t b) {
+        return std::tuple(links_[a].matches.size(), b) < std::tuple(links_[b].matches.size(), a);
+    };
+    std::priority_queue<size_t, std::vector<size_t>, decltype(is_weaker)> open(is_weaker);  // links of joined pictures
+    const auto join = [&](size_t picture) {
+        joined[picture] = true;
+        for (const size_t n : of_picture[picture]) open.push(n);
+    };
+    for (join(root_); !open.empty();) {
+        const size_t best = open.top();
+        open.pop();
         const auto &p = links_[best].picture;
+        if (joined[p[0]] && joined[p[1]]) continue;
         tree_.emplace_back(best, joined[p[1]]);
-        joined[p[0]] = joined[p[1]] = true;
+        join(joined[p[1]] ? p[0] : p[1]);
     }
 }
 
@@ -300,18 +322,21 @@ double CameraFit::expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen
     return sum;
 }
 
-// Uses every link_step-th link.
+// Uses every link_step-th link. Adds in the order of the links, so that the number of threads does not matter.
 double CameraFit::cost(double scale, size_t link_step) const {
-    double sum = expectation(nullptr, nullptr);
-    Eigen::Vector2d r;
-    for (size_t n = 0; n < links_.size(); n += link_step) {
+    const std::vector<Pinhole> cameras = pinholes();
+    std::vector<double> sums((links_.size() + link_step - 1) / link_step);
+    for_each_item(static_cast<uint32_t>(sums.size()), thread_count(0), [&](uint32_t item, uint32_t) {
+        const size_t n = item * link_step;
         const auto &p = links_[n].picture;
+        Eigen::Vector2d r;
         for (const Match &m : used_matches()[n]) {
-            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], m, r);
-            sum += std::log1p(seen ? r.squaredNorm() / std::pow(px(n, scale), 2) : 1.0 / (scale * scale));
+            const bool seen = residual(cameras[p[0]], cameras[p[1]], m, r);
+            sums[item] += std::log1p(seen ? r.squaredNorm() / std::pow(px(n, scale), 2) : 1.0 / (scale * scale));
         }
-    }
-    return sum;
+        return true;
+    });
+    return std::accumulate(sums.begin(), sums.end(), expectation(nullptr, nullptr));
 }
 
 // The unknowns of a link.
@@ -327,32 +352,35 @@ CameraFit::Part CameraFit::part_of(size_t link) const {
     return part;
 }
 
-// Forward differences. The direction of the match is shared by all unknowns of the second camera alone.
-void CameraFit::add_match(size_t link, const Match &match, double scale, Part &part) const {
+// Forward differences. Only the lens of the first camera changes the ray of a match in its frame.
+void CameraFit::add_match(size_t link, const Match &match, double scale, const Nearby &first, const Nearby &second,
+                          Part &part) const {
     const uint32_t *p = links_[link].picture;
-    lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
-    double seen[2];
+    Eigen::Vector3d ray, direction, moved_ray, moved_direction;
     Eigen::Vector2d r, moved;
-    if (!lensprof_camera_unproject(&camera[0], match.first.x, match.first.y, seen)
-        || !residual(camera[1], seen, match, r))
+    if (!first.at.ray(match.first.x, match.first.y, ray) || !first.at.seen(ray, direction)
+        || !residual(second.at, direction, match, r))
         return;
     const double s = px(link, scale), weight = 1.0 / (s * s + r.squaredNorm());  // rho'(e) / s^2
-    Eigen::Matrix<double, 2, 2 *camera_unknowns> rows = Eigen::Matrix<double, 2, 2 * camera_unknowns>::Zero();
+    Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * camera_unknowns> rows(2, part.count);
     for (Eigen::Index n = 0; n < part.count; n++) {
         const Eigen::Index k = part.unknown[n];
         const int end = part.end[n];
-        const bool is_shared = k < lens_unknowns && part.column[n] == column(p[1 - end], k);
-        const double before[2] = {value(camera[0], k), value(camera[1], k)};
-        value(camera[end], k) += difference_steps[k];
-        if (is_shared) value(camera[1 - end], k) += difference_steps[k];
-        const bool is_seen = end == 1 && !is_shared ? residual(camera[1], seen, match, moved)
-                                                    : residual(camera[0], camera[1], match, moved);
-        if (!is_seen) return;
-        for (int side = 0; side < 2; side++) value(camera[side], k) = before[side];
+        const bool is_of_lens = k < lens_unknowns, is_shared = is_of_lens && part.column[n] == column(p[1 - end], k);
+        const Pinhole &from = end == 0 || is_shared ? first.moved[k] : first.at,
+                      &to = end == 1 || is_shared ? second.moved[k] : second.at;
+        bool is_seen = true;
+        if (end == 1 && !is_shared)
+            moved_direction = direction;
+        else if (is_of_lens)
+            is_seen = from.ray(match.first.x, match.first.y, moved_ray) && from.seen(moved_ray, moved_direction);
+        else
+            is_seen = from.seen(ray, moved_direction);
+        if (!is_seen || !residual(to, moved_direction, match, moved)) return;
         rows.col(n) = (moved - r) / difference_steps[k];
     }
-    part.normal += weight * rows.transpose() * rows;
-    part.right -= weight * rows.transpose() * r;
+    part.normal.topLeftCorner(part.count, part.count) += weight * rows.transpose().lazyProduct(rows);
+    part.right.head(part.count) -= weight * rows.transpose().lazyProduct(r);
 }
 
 void CameraFit::move(const Eigen::VectorXd &step) {
@@ -361,21 +389,28 @@ void CameraFit::move(const Eigen::VectorXd &step) {
             if (const Eigen::Index c = column(i, k); c >= 0) value(cameras_[i], k) += step[c];
 }
 
-// Sums over all links on all cores, in their order, so that the number of threads does not matter.
+// Sums over all links on all cores, in their order, so that the number of threads does not matter. The parts of a
+// thousand links are kept at a time: of all links of thousands of frames they would take 100 MB.
 void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const {
-    std::vector<Part> parts(links_.size());
-    for_each_item(static_cast<uint32_t>(links_.size()), thread_count(0), [&](uint32_t n, uint32_t) {
-        parts[n] = part_of(n);
-        for (const Match &m : used_matches()[n]) add_match(n, m, scale, parts[n]);
-        return true;
-    });
-    for (const Part &part : parts)
-        for (Eigen::Index a = 0; a < part.count; a++) {
-            right[part.column[a]] += part.right[a];
-            for (Eigen::Index b = 0; b < part.count; b++)
-                if (part.column[b] <= part.column[a])
-                    normal.emplace_back(part.column[a], part.column[b], part.normal(a, b));
-        }
+    constexpr size_t links_at_once = 1000;
+    const std::vector<Nearby> cameras(cameras_.begin(), cameras_.end());
+    for (size_t begin = 0; begin < links_.size(); begin += links_at_once) {
+        std::vector<Part> parts(std::min(links_at_once, links_.size() - begin));
+        for_each_item(static_cast<uint32_t>(parts.size()), thread_count(0), [&](uint32_t item, uint32_t) {
+            const size_t n = begin + item;
+            const uint32_t *p = links_[n].picture;
+            parts[item] = part_of(n);
+            for (const Match &m : used_matches()[n]) add_match(n, m, scale, cameras[p[0]], cameras[p[1]], parts[item]);
+            return true;
+        });
+        for (const Part &part : parts)
+            for (Eigen::Index a = 0; a < part.count; a++) {
+                right[part.column[a]] += part.right[a];
+                for (Eigen::Index b = 0; b < part.count; b++)
+                    if (part.column[b] <= part.column[a])
+                        normal.emplace_back(part.column[a], part.column[b], part.normal(a, b));
+            }
+    }
 }
 
 // False if no step reduces the cost clearly.
@@ -424,13 +459,14 @@ void CameraFit::descend(double first_scale) {
 }
 
 std::vector<double> CameraFit::residuals() const {
+    const std::vector<Pinhole> cameras = pinholes();
     std::vector<double> result;
     for (size_t n = 0; n < links_.size(); n++) {
         const auto &p = links_[n].picture;
         std::vector<double> off;
         Eigen::Vector2d r;
         for (const Match &m : matches_[n])
-            off.push_back(residual(cameras_[p[0]], cameras_[p[1]], m, r) ? r.norm() / px(n, 1.0) : 1.0);
+            off.push_back(residual(cameras[p[0]], cameras[p[1]], m, r) ? r.norm() / px(n, 1.0) : 1.0);
         result.push_back(upper_median(off));
     }
     return result;

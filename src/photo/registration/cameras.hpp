@@ -9,7 +9,7 @@
 //
 // over the matches x_i, x_j of the links, px; rho(e) = log(1 + e), a Cauchy loss, whose scale s falls from a tenth of
 // the picture to a few px: loops that a wrong angle of view leaves open close first, then wrong links lose their
-// weight. Levenberg-Marquardt steps, central differences, sparse normal equations.
+// weight. Levenberg-Marquardt steps, forward differences, sparse normal equations.
 #pragma once
 
 #include <cstdint>

@@ -66,10 +66,8 @@ cv::Mat stretched(cv::Mat grey, bool is_linear) {
     return out;
 }
 
-}  // namespace
-
 // The frame as a square of 64 px, minus its blurred version: what a change of tone or a vignetting barely affects.
-static cv::Mat detail_of(const cv::Mat &grey) {
+cv::Mat detail_of(const cv::Mat &grey) {
     constexpr int side = 64;
     constexpr double blur = 3.0;  // px
     cv::Mat small, smooth;
@@ -78,6 +76,43 @@ static cv::Mat detail_of(const cv::Mat &grey) {
     cv::GaussianBlur(small, smooth, {}, blur, blur, cv::BORDER_REFLECT);
     return small - smooth;
 }
+
+// SIFT features of a picture; their places in it, px.
+struct Found {
+    std::vector<cv::KeyPoint> points;
+    cv::Mat descriptors;  // one row per point
+};
+
+Found detected(const cv::Mat &grey, uint32_t max_count) {
+    Found found;
+    cv::SIFT::create(static_cast<int>(max_count), 3, contrast)
+        ->detectAndCompute(grey, cv::noArray(), found.points, found.descriptors);
+    return found;
+}
+
+// The same at half the size, in a quarter of the time: without the finest features, which come last in every order.
+Found detected_at_half(const cv::Mat &grey, uint32_t max_count) {
+    const cv::Mat even = grey(cv::Rect(0, 0, grey.cols / 2 * 2, grey.rows / 2 * 2));
+    if (even.empty()) return {};
+    cv::Mat half;
+    cv::resize(even, half, {even.cols / 2, even.rows / 2}, 0, 0, cv::INTER_AREA);
+    Found found = detected(half, max_count);
+    for (cv::KeyPoint &p : found.points) p.pt = 2.0f * p.pt + cv::Point2f(0.5f, 0.5f), p.size *= 2.0f;
+    return found;
+}
+
+// Numbers of points, the largest first. A strict order, so that the result does not depend on the detector's order.
+std::vector<int> largest_first(const std::vector<cv::KeyPoint> &points) {
+    std::vector<int> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+        const cv::KeyPoint &p = points[static_cast<size_t>(a)], &q = points[static_cast<size_t>(b)];
+        return std::tie(q.size, p.pt.x, p.pt.y, p.angle) < std::tie(p.size, q.pt.x, q.pt.y, q.angle);
+    });
+    return order;
+}
+
+}  // namespace
 
 cv::Mat take_roots(const cv::Mat &descriptors) {
     cv::Mat roots(descriptors.rows, descriptors.cols, CV_16S), row;
@@ -93,37 +128,29 @@ uint32_t most_features_of(size_t pictures) {
     return static_cast<uint32_t>(std::clamp(of_all / std::max<size_t>(pictures, 1), fewest, usual));
 }
 
-Features find_features(const std::string &file, uint32_t max_count) {
+Features find_features(const std::string &file, uint32_t max_count, size_t enough) {
     PictureReader reader(file);
     const Picture &header = reader.header();
-    Features found;
-    found.width = header.width, found.height = header.height;
-    found.is_grey = lensprof_layout_channels(header.layout) == 1;
+    Features features;
+    features.width = header.width, features.height = header.height;
+    features.is_grey = lensprof_layout_channels(header.layout) == 1;
     const double longer = std::max(header.width, header.height);
     const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / reduced_side)));
-    if (header.width < reduction || header.height < reduction) return found;  // a line
+    if (header.width < reduction || header.height < reduction) return features;  // a line
     const cv::Mat grey = stretched(reduced_grey(reader, reduction),
                                    header.sample == LENSPROF_SAMPLE_F32 || header.traits.format == FileFormat::raw);
-    found.detail = detail_of(grey);
-    std::vector<cv::KeyPoint> points;
-    cv::Mat descriptors;
-    cv::SIFT::create(static_cast<int>(max_count), 3, contrast)
-        ->detectAndCompute(grey, cv::noArray(), points, descriptors);
-    // A strict order, so that the result does not depend on the detector's order.
-    std::vector<int> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
-        const cv::KeyPoint &p = points[static_cast<size_t>(a)], &q = points[static_cast<size_t>(b)];
-        return std::tie(q.size, p.pt.x, p.pt.y, p.angle) < std::tie(p.size, q.pt.x, q.pt.y, q.angle);
-    });
+    features.detail = detail_of(grey);
+    Found found;
+    if (enough > 0) found = detected_at_half(grey, max_count);
+    if (enough == 0 || found.points.size() < enough) found = detected(grey, max_count);
     cv::Mat sorted;
-    for (int i : order) {
-        const cv::KeyPoint &p = points[static_cast<size_t>(i)];
-        found.places.emplace_back((p.pt.x + 0.5) * reduction - 0.5, (p.pt.y + 0.5) * reduction - 0.5);
-        sorted.push_back(descriptors.row(i));
+    for (int i : largest_first(found.points)) {
+        const cv::Point2f &p = found.points[static_cast<size_t>(i)].pt;
+        features.places.emplace_back((p.x + 0.5) * reduction - 0.5, (p.y + 0.5) * reduction - 0.5);
+        sorted.push_back(found.descriptors.row(i));
     }
-    found.descriptors = take_roots(sorted);
-    return found;
+    features.descriptors = take_roots(sorted);
+    return features;
 }
 
 }  // namespace lensprof

@@ -23,8 +23,9 @@ constexpr double unit_length = 32767.0;  // of a descriptor: products of two fit
 // Maximum number of features per picture of `pictures`: 3000 for few and 800 for many, which take 200 kB.
 uint32_t most_features_of(size_t pictures);
 
-// Features of a picture, about `max_count` of them, largest first. Failure for an unreadable picture.
-Features find_features(const std::string &file, uint32_t max_count);
+// Features of a picture, about `max_count` of them, largest first. If it has `enough` at half the size, the finest are
+// not looked for; 0: they are. Failure for an unreadable picture.
+Features find_features(const std::string &file, uint32_t max_count, size_t enough);
 
 // The square roots of descriptors, scaled to sum 1 (Arandjelovic & Zisserman 2012), so of length 1, in units of
 // 1/unit_length: Euclidean distances between them are Hellinger distances between the histograms.

@@ -25,12 +25,9 @@ constexpr double still = 0.002;       // of the longer side: less than the movem
 constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
 constexpr int max_draws = 3000;       // of four matches for a homography
 constexpr int max_rounds = 5;         // of matching: links found determine the next candidates
-// Up to this number of pictures, all links are looked for, with all features. Beyond, a picture that has enough links
-// needs no more, and the largest features of two suffice for a link if as many as these match.
-constexpr size_t few_pictures = 40;
 constexpr int quick_features = 1000;
-constexpr size_t plenty_matches = 100;
-constexpr uint32_t max_revisits = 2;  // pictures most like one, of those that are not near by links
+constexpr size_t plenty_matches = 100;  // of the largest features, which suffice for a link then
+constexpr uint32_t max_revisits = 2;    // pictures most like one, of those that are not near by links
 
 enum class Effort {
     quick,
@@ -106,18 +103,28 @@ bool is_still_scene(const Places &stayed, const Places &moved, const Features &p
            && 2 * static_cast<size_t>(outside) <= moved.size();
 }
 
+// The matches of two pictures, by whether they are at the same position in both frames.
+struct Matched {
+    Places all, moved, stayed;
+    double longer_side;
+
+    Matched(const Features &a, const Features &b, Effort effort)
+        : longer_side(std::max(std::max(a.width, a.height), std::max(b.width, b.height))) {
+        for (const Match &m : match(a, b, effort)) {
+            const cv::Point2d from = a.places[static_cast<size_t>(m.first)],
+                              to = b.places[static_cast<size_t>(m.second)];
+            all.emplace_back(from, to);
+            (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
+        }
+    }
+};
+
 // Uses what moved between frames; or, if that shows nothing, everything: what is fixed to the frame (a date stamp, a
 // logo, dirt) matches in every pair of pictures. Nothing moves with a stationary camera, except that matches of
 // repetitive objects may agree by chance.
 std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair, Effort effort) {
-    const Features &a = pictures[pair.first], &b = pictures[pair.second];
-    const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
-    Places all, moved, stayed;
-    for (const Match &m : match(a, b, effort)) {
-        const cv::Point2d from = a.places[static_cast<size_t>(m.first)], to = b.places[static_cast<size_t>(m.second)];
-        all.emplace_back(from, to);
-        (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
-    }
+    const Features &a = pictures[pair.first];
+    const auto [all, moved, stayed, longer_side] = Matched(a, pictures[pair.second], effort);
     auto by_moved = link_by(pair, moved, longer_side);
     const bool is_scene = is_still_scene(stayed, by_moved ? by_moved->matches : Places(), a);
     if (by_moved && !is_scene) return by_moved;
@@ -276,11 +283,23 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Event
     return links;
 }
 
+bool turn_only(const std::vector<std::pair<Features, Features>> &neighbours) {
+    constexpr double share_of_turn = 0.9;  // more than 0.97 if the camera turns, less than 0.65 if it moves
+    size_t matches = 0, follow = 0;
+    for (const auto &[first, second] : neighbours) {
+        const Matched matched(first, second, Effort::quick);
+        matches += matched.moved.size();
+        if (const auto found = link_by({0, 1}, matched.moved, matched.longer_side)) follow += found->matches.size();
+    }
+    return follow >= plenty_matches * neighbours.size()
+           && static_cast<double>(follow) > share_of_turn * double(matches);
+}
+
 std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links, const TakesLink &takes) {
     std::vector<uint32_t> first(pictures);
     std::iota(first.begin(), first.end(), 0u);
     const auto root = [&](uint32_t i) {
-        while (first[i] != i) i = first[i];
+        while (first[i] != i) i = first[i] = first[first[i]];
         return i;
     };
     for (const PictureLink &link : links) {

@@ -22,6 +22,14 @@ struct PictureLink {
     bool is_scene = false;  // and this is the scene, not something fixed to the frame
 };
 
+// Up to this number of pictures, all links are looked for, with all features. Beyond, a picture that has enough links
+// needs no more, and the largest features of two suffice for a link if many of them match.
+constexpr size_t few_pictures = 40;
+
+// Whether the camera only turned between neighbours in a sequence (or saw a plane): plenty of their features match, and
+// nearly all of these follow one homography each.
+bool turn_only(const std::vector<std::pair<Features, Features>> &neighbours);
+
 // The links between pictures, sorted by index.
 std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Events &events);
 

@@ -109,15 +109,38 @@ struct RegisteredPicture {
     bool is_copy = false;  // of another picture
 };
 
+// How many features at half the size are enough for each of these pictures; 0: any number is too few. Where the camera
+// moved, places of the finest features count, as pictures are compared at them; links of frames of a camera that turns
+// share its angles. Looks at a few pairs of neighbours.
+size_t enough_at_half(const std::vector<std::string> &files, uint32_t max_features, Events &events) {
+    constexpr size_t probes = 8, enough = 200;
+    if (files.size() <= few_pictures) return 0;
+    std::vector<std::pair<Features, Features>> neighbours(probes);
+    std::vector<char> is_read(probes);  // not bool: written by several threads
+    for_each_parallel(probes, "looking at neighbours", events, [&](uint32_t n) {
+        const size_t i = n * (files.size() - 2) / (probes - 1);
+        try {
+            neighbours[n] = {find_features(files[i], max_features, 1), find_features(files[i + 1], max_features, 1)};
+            is_read[n] = true;
+        } catch (const Failure &failure) {
+            if (failure.group() != LENSPROF_ERROR_READ) throw;
+        }
+    });
+    for (size_t n = probes; n-- > 0;)
+        if (!is_read[n]) neighbours.erase(neighbours.begin() + static_cast<ptrdiff_t>(n));
+    return !neighbours.empty() && turn_only(neighbours) ? enough : 0;
+}
+
 // Metadata and features per picture.
 std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files,
                                         const std::vector<PictureMetadata> &metadata, Events &events) {
     std::vector<RegisteredPicture> pictures(files.size());
     const uint32_t max_features = most_features_of(files.size());
+    const size_t enough = enough_at_half(files, max_features, events);
     for_each_parallel(static_cast<uint32_t>(files.size()), "finding features", events, [&](uint32_t i) {
         try {
             pictures[i].metadata = metadata.empty() ? read_metadata(files[i]) : metadata[i];
-            pictures[i].features = find_features(files[i], max_features);
+            pictures[i].features = find_features(files[i], max_features, enough);
         } catch (const Failure &failure) {
             if (failure.group() != LENSPROF_ERROR_READ) throw;
             pictures[i].features = {};
