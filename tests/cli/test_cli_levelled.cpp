@@ -2,6 +2,7 @@
 #include <sched.h>
 
 #include "clip_scenes.hpp"
+#include "program_runs.hpp"
 
 #include "photo/video/video.hpp"
 
@@ -131,13 +132,13 @@ void test_codecs(void **) {
     assert_true(spread(frames_of("web.webm")) < 0.3 * spread(frames_of("still.mkv")));
 }
 
-// One processor, or all.
+// One processor, or all. A new program: the threads of OpenCV in this one may hold locks when it forks.
 void test_same_bytes(void **) {
     const std::string source = encoded("still", "same.mkv", "-frames:v 8 -c:v libx264 -crf 8 -pix_fmt yuv420p");
     for (const char *codec : {"h264", "h265", "vp9", "ffv1"}) {
         const Words words = Words{"deflicker", source, "--overwrite", "--codec", codec} + known;
         must_exit(done, words + Words{"-o", in_folder("all.mkv")});
-        const Outcome outcome = run_child(words + Words{"-o", in_folder("one.mkv")}, [] {
+        const auto ended = program_runs::run_program(words + Words{"-o", in_folder("one.mkv")}, [] {
             cpu_set_t one;
             CPU_ZERO(&one);
             sched_getaffinity(0, sizeof one, &one);
@@ -145,7 +146,7 @@ void test_same_bytes(void **) {
                 if (CPU_ISSET(cpu, &one) && kept++) CPU_CLR(cpu, &one);
             sched_setaffinity(0, sizeof one, &one);
         });
-        assert_int_equal(outcome.code, done);
+        if (ended.code != done) fail_msg("%s: %d, %s", codec, ended.code, ended.err.c_str());
         if (load(in_folder("all.mkv")) != load(in_folder("one.mkv"))) fail_msg("%s: other bytes", codec);
     }
 }
@@ -188,14 +189,12 @@ void test_video_refusals(void **) {
                    {"out.mp4: a video is written of a video"});
     const Disk before = disk();
     const Words words = Words{"deflicker", source, "-o", out} + known;
-    assert_refusal(words,
-                   run_child(words,
-                             [] {
-                                 const rlimit limit{20000, 20000};
-                                 setrlimit(RLIMIT_FSIZE, &limit);
-                                 std::signal(SIGXFSZ, SIG_IGN);
-                             }),
-                   failed, {"out.mp4: cannot be written"}, before);
+    const auto ended = program_runs::run_program(words, [] {
+        const rlimit limit{20000, 20000};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        std::signal(SIGXFSZ, SIG_IGN);
+    });
+    assert_refusal(words, {ended.code, "", ended.err}, failed, {"out.mp4: cannot be written"}, before);
 }
 
 // Frames, tables and charts of a video as of a folder.
@@ -298,7 +297,7 @@ void test_moving_video(void **) {
     const Words words = {"calibrate", source, "-o", in_folder("model"), "--no-store", "--frames"};
     const Outcome outcome =
         run_words(words + Words{in_folder("model/levelled.mkv"), "--to", "first", "--codec", "ffv1"});
-    assert_int_equal(outcome.code, done);
+    if (outcome.code != done) fail_msg("%s", outcome.err.c_str());
     assert_true(contains(outcome.err,
                          "levelled.mkv: not levelled, because the exposure is not measured: frame_00013, "
                          "frame_00014"));
@@ -346,7 +345,7 @@ void test_transforms(void **) {
     save_text(listed, content.dump());
     const Words words = {"calibrate", data, "-o", in_folder("data_model"), "--no-store", "--frames"};
     const Outcome outcome = run_words(words + Words{in_folder("trained")});
-    assert_true(outcome.code == done);
+    if (outcome.code != done) fail_msg("%s", outcome.err.c_str());
     assert_true(contains(outcome.err, "trained: left out, because the exposure is not measured: frame_00005.png"));
     Json found = parsed(text_of(in_folder("trained/transforms.json")));
     assert_int_equal(found["frames"].size(), moving_frames - 1);
