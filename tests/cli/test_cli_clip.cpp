@@ -252,6 +252,31 @@ void test_refusals(void **) {
                      option[0] + ": is for clips; give one video"));
 }
 
+// A stationary camera is named after a look at every sixth frame: the others, which are damaged here, are not decoded. A
+// clip that moves after a still second is a clip.
+void test_still_start(void **) {
+    if (!can_read_video()) skip();
+    write_frames("tripod_seen", 12, 0.0, false);
+    fs::create_directories(folder / "long_still");
+    const std::string damaged = text_of(in_folder("tripod_seen/images/00001.png")).substr(0, 3000);
+    for (uint32_t i = 0; i < 130; i++) {
+        const std::string name = in_folder("long_still/" + frame_name(i));
+        if (i % 6 == 0)
+            fs::copy_file(in_folder("tripod_seen/images/" + frame_name(i / 6 % 12)), name);
+        else
+            save_text(name, damaged);
+    }
+    const Outcome still =
+        run_words({"calibrate", in_folder("long_still"), "--moving", "-o", in_folder("nothing"), "--no-store"});
+    assert_int_equal(still.code, not_usable);
+    assert_true(contains(still.err, "does not move in the first 121 frames, which"));
+    fs::create_directories(folder / "late_start");
+    for (uint32_t i = 0; i < 24 + frames; i++)
+        fs::copy_file(in_folder("moving/images/" + frame_name(i < 24 ? 0 : i - 24)),
+                      in_folder("late_start/" + frame_name(i)));
+    must_exit(done, {"calibrate", in_folder("late_start"), "--moving", "-o", in_folder("late"), "--no-store"});
+}
+
 int set_up(void **state) {
     if (make_folder(state) != 0) return 1;
     write_frames("moving", frames, 9.0, true);
@@ -264,7 +289,7 @@ int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
         cmocka_unit_test(test_deflicker),        cmocka_unit_test(test_refusals), cmocka_unit_test(test_what_is_kept),
-        cmocka_unit_test(test_deep_grey_frames),
+        cmocka_unit_test(test_deep_grey_frames), cmocka_unit_test(test_still_start),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -170,10 +170,10 @@ ClipOptions options_of_clip(const std::string &times, const ClipTracks &clip) {
 }
 
 void check_clip(const ClipTracks &clip) {
+    if (clip.frames_in_clip > 1 && clip.is_static()) refuse_static(clip);
     if (clip.frames.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, clip.path + ": has only one frame; give a clip of a moving camera",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (clip.is_static()) refuse_static(clip);
 }
 
 // Stores the profile after all files, if the clip states a camera.

@@ -11,8 +11,6 @@ namespace {
 
 constexpr int patch_side = 7;  // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
-constexpr size_t most_static_frames = 120;
-constexpr double most_static_s = 3.0;
 
 // Sums of a channel over the samples of a patch.
 struct ChannelSums {
@@ -72,9 +70,12 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
                          "64 pixels and more, of usual proportions",
                          clip.info.width, clip.info.height),
             LENSPROF_REASON_FEW_PAIRS);
+    const StillStart still = find_still_start(source);
+    clip.frames_in_clip = still.frames, clip.shown_frames = still.shown;
+    if (still.frames > 0) return clip;
     CornerTracker tracker;
     bool is_grey = true;
-    double next_s = 0.0, shown_s = -1.0;
+    double next_s = 0.0;
     for (VideoFrame frame; source.next(frame);) {
         clip.frames_in_clip++;
         stop_if_cancelled();
@@ -84,9 +85,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         const auto total = clip.info.frames;
         events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
                       counted(clip.frames_in_clip, "frame"));
-        if (!tracked.is_blank && clip.shown_frames++ == 0) shown_s = frame.seconds;
-        if (clip.shown_frames >= most_static_frames && frame.seconds >= shown_s + most_static_s && clip.is_static())
-            break;
+        clip.shown_frames += !tracked.is_blank;
         if (taken_per_s > 0.0) {
             if (frame.seconds < next_s - 0.5 / std::max(taken_per_s, clip.info.frames_per_s)) continue;
             next_s = (std::floor(frame.seconds * taken_per_s + 0.5) + 1.0) / taken_per_s;

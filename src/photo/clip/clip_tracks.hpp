@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "photo/base/events.hpp"
+#include "photo/clip/camera_motion.hpp"
 #include "photo/clip/frame_source.hpp"
 
 namespace lensprof {
@@ -47,12 +48,12 @@ struct ClipTracks {
     std::vector<ClipFrame> frames;
     uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: neither black nor white
     double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
-    bool is_static() const { return travel < 0.01; }
+    bool is_static() const { return travel < still_travel; }
 };
 
 // Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). Follows scene
-// points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. Ends early (`is_static`)
-// where nothing moves in the first 120 frames, of 3 s or more, that are neither black nor white.
+// points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still start
+// is not followed (`is_static`).
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
 
 // The observations of the same tracks in two frames: call(a, b).
