@@ -277,6 +277,39 @@ void test_still_start(void **) {
     must_exit(done, {"calibrate", in_folder("late_start"), "--moving", "-o", in_folder("late"), "--no-store"});
 }
 
+// Wrong times are named before later frames are read, here damaged ones: by the number of lines, and by their changes.
+void test_wrong_times_are_named_early(void **) {
+    if (!can_read_video()) skip();
+    constexpr uint32_t count = 310, swing = frames - 1;  // to and fro
+    const auto place = [](uint32_t i) { return i % (2 * swing) < swing ? i % swing : swing - i % swing; };
+    fs::create_directories(folder / "swing");
+    for (uint32_t i = 0; i < count; i++) {
+        const std::string name = in_folder("swing/" + frame_name(i));
+        if (i < 302)
+            fs::copy_file(in_folder("moving/images/" + frame_name(place(i))), name);
+        else
+            save_text(name, text_of(in_folder("moving/images/00000.png")).substr(0, 3000));
+    }
+    const auto refusal = [&](uint32_t lines, double (*ev)(uint32_t)) {
+        std::ofstream times(in_folder("swing.txt"));
+        for (uint32_t i = 0; i < lines; i++) times << i << " " << i << " " << 10.0 * std::exp2(ev(i)) << "\n";
+        times.close();
+        const Outcome outcome = run_words({"calibrate", in_folder("swing"), "--moving", "-o", in_folder("nothing"),
+                                           "--times", in_folder("swing.txt"), "--no-store"});
+        assert_true(outcome.code != done);
+        return outcome.err;
+    };
+    assert_true(contains(refusal(count - 1, true_ev), "swing.txt: has 309 lines, but the clip has 310 frames"));
+    assert_true(contains(refusal(count, [](uint32_t i) { return std::cos(i * i / 7.0); }),
+                         "the given exposure times differ from what the frames show by"));
+    assert_true(contains(refusal(count, [](uint32_t i) { return 0.0 * i; }), "the given exposure times differ"));
+    const std::string right = refusal(count, [](uint32_t i) {
+        return true_ev(i % (2 * swing) < swing ? i % swing : swing - i % swing);
+    });
+    assert_false(contains(right, "exposure times"));
+    assert_true(contains(right, "00302.png"));
+}
+
 int set_up(void **state) {
     if (make_folder(state) != 0) return 1;
     write_frames("moving", frames, 9.0, true);
@@ -290,6 +323,7 @@ int main() {
         cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
         cmocka_unit_test(test_deflicker),        cmocka_unit_test(test_refusals), cmocka_unit_test(test_what_is_kept),
         cmocka_unit_test(test_deep_grey_frames), cmocka_unit_test(test_still_start),
+        cmocka_unit_test(test_wrong_times_are_named_early),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

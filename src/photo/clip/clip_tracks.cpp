@@ -9,6 +9,7 @@
 namespace lensprof {
 namespace {
 
+constexpr size_t first_look = 300;  // frames
 constexpr int patch_side = 7;  // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
 
@@ -59,7 +60,8 @@ std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place,
 
 }  // namespace
 
-ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events) {
+ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
+                      const std::function<void(const ClipTracks &)> &look) {
     ClipTracks clip;
     clip.path = path, clip.info = source.info();
     if (!CornerTracker::can_follow(clip.info.width, clip.info.height))
@@ -100,6 +102,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }
         clip.frames.push_back(std::move(found));
+        if (clip.frames.size() == first_look) look(clip);
     }
     events.clear();
     clip.channels = is_grey ? 1 : 3;

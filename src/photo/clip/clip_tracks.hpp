@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,9 @@ struct ClipTracks {
 
 // Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). Follows scene
 // points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still start
-// is not followed (`is_static`).
-ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
+// is not followed (`is_static`). `look` is called once, after 300 measured frames, and may throw.
+ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
+                      const std::function<void(const ClipTracks &)> &look);
 
 // The observations of the same tracks in two frames: call(a, b).
 template <class Call>

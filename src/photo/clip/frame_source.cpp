@@ -38,7 +38,7 @@ public:
         if (transforms_) check_stated_size(*transforms_, header.width, header.height);
         const PictureMetadata metadata = read_metadata(files_[0]);
         info_.width = header.width, info_.height = header.height, info_.sample = header.sample;
-        info_.orientation = metadata.orientation, info_.codec = "pictures";
+        info_.orientation = metadata.orientation, info_.codec = pictures_codec;
         info_.camera_maker = metadata.key.camera_maker, info_.camera_model = metadata.key.camera_model;
         info_.frames_per_s = frames_per_s, info_.frames = files_.size();
     }

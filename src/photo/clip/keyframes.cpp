@@ -12,21 +12,7 @@ constexpr double exposure_step_ev = 0.3, usual_gamma = 2.2;  // the response is 
 constexpr double every_frame = 2.0;                          // as the share of scene points
 constexpr size_t least_shared = 12, least_keyframes = 50;
 
-// What two frames have in common.
-struct Common {
-    size_t shared = 0;
-    double step_ev = 0.0;  // about, from grey values
-};
-
 bool is_usable(const ClipObservation &seen) { return seen.value[1] > 0.04f && seen.value[1] < 0.98f; }
-
-Common common_of(const ClipFrame &first, const ClipFrame &second) {
-    std::vector<double> steps;
-    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
-        if (is_usable(a) && is_usable(b)) steps.push_back(usual_gamma * std::log2(b.value[1] / a.value[1]));
-    });
-    return {steps.size(), upper_median(steps)};
-}
 
 // Consecutive keyframes that share scene points.
 struct Run {
@@ -52,7 +38,7 @@ std::vector<Run> runs_at(const ClipTracks &clip, double least_share) {
         }
         Run &run = runs.back();
         const ClipFrame &last = clip.frames[run.frames.back()];
-        const Common common = common_of(last, frame);
+        const CommonPoints common = common_of(last, frame);
         const auto of_last = std::count_if(last.observations.begin(), last.observations.end(), is_usable);
         const double share = double(common.shared) / std::max(double(of_last), 1.0);
         if (share >= least_share && std::abs(common.step_ev) < exposure_step_ev) continue;
@@ -83,6 +69,14 @@ double worth_of(const Run &run, size_t first, size_t end) {
 }
 
 }  // namespace
+
+CommonPoints common_of(const ClipFrame &first, const ClipFrame &second) {
+    std::vector<double> steps;
+    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
+        if (is_usable(a) && is_usable(b)) steps.push_back(usual_gamma * std::log2(b.value[1] / a.value[1]));
+    });
+    return {steps.size(), upper_median(steps)};
+}
 
 std::vector<uint32_t> choose_keyframes(const ClipTracks &clip, uint32_t most) {
     std::vector<Run> runs;

@@ -1,0 +1,15 @@
+// Whether given exposure times are those of a clip, before anything is fitted.
+#pragma once
+
+#include "photo/clip/clip_tracks.hpp"
+
+namespace lensprof {
+
+// Failure (not usable) for known exposures that differ from what the frames show.
+[[noreturn]] void refuse_times(const ClipTracks &clip, double rms_ev);
+
+// The same if the known exposures, one per frame with NaN for none, are certainly not those of these frames. Compared
+// are the changes over 16 frames, with whatever exponent makes them most alike, because the response is not known yet.
+void check_times_early(const ClipTracks &clip, const std::vector<double> &known_ev);
+
+}  // namespace lensprof
