@@ -63,7 +63,7 @@ std::string exposure_table(const ClipTracks &clip) {
         else
             text += ",,,";
         text +=
-            format(",%d,%d,%zu,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations.size(), frame.mean_level);
+            format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations, frame.mean_level);
     }
     return text;
 }

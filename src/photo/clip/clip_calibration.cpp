@@ -45,7 +45,7 @@ std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
                                                         const std::vector<uint32_t> &keyframes) {
     std::map<uint32_t, std::vector<lensprof_observation>> points;
     for (uint32_t k = 0; k < keyframes.size(); k++)
-        for (const ClipObservation &seen : clip.frames[keyframes[k]].observations) {
+        for (const ClipObservation &seen : clip.observations_of(keyframes[k])) {
             if (std::isnan(seen.value[0]) || std::isnan(seen.value[1]) || std::isnan(seen.value[2])) continue;
             points[seen.track].push_back({seen.track,
                                           k,

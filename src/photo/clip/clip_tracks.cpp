@@ -60,6 +60,12 @@ std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place,
 
 }  // namespace
 
+ClipObservations ClipTracks::observations_of(size_t frame) const {
+    ClipObservations found(frames[frame].observations);
+    observations->read(frames[frame].observations_at, found.data(), found.size() * sizeof(ClipObservation));
+    return found;
+}
+
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
                       const std::function<void(const ClipTracks &)> &look) {
     ClipTracks clip;
@@ -96,12 +102,16 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         found.number = frame.number, found.seconds = frame.seconds;
         found.mean_level = tracked.mean_level, found.motion = tracked.motion, found.repeats = tracked.repeats;
         if (tracked.is_blank) found.state = ClipState::blank;
+        ClipObservations observations;
         for (const TrackedPlace &place : tracked.places) {
             const auto value = patch_mean(frame.picture, place, patch_side * static_cast<int>(tracked.side));
-            found.observations.push_back({place.track, place.x, place.y, value});
+            observations.push_back({place.track, place.x, place.y, value});
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }
-        clip.frames.push_back(std::move(found));
+        found.observations = static_cast<uint32_t>(observations.size());
+        found.observations_at =
+            clip.observations->append(observations.data(), observations.size() * sizeof(ClipObservation));
+        clip.frames.push_back(found);
         if (clip.frames.size() == first_look) look(clip);
     }
     events.clear();

@@ -25,7 +25,7 @@ void check_times_early(const ClipTracks &clip, const std::vector<double> &known_
     constexpr double unexplained = 0.7;                    // share of the given changes
     double seen2 = 0.0, given2 = 0.0, both = 0.0, steps = 0.0;
     for (size_t i = lag; i < std::min(known_ev.size(), clip.frames.size()); i++) {
-        const CommonPoints common = common_of(clip.frames[i - lag], clip.frames[i]);
+        const CommonPoints common = common_of(clip.observations_of(i - lag), clip.observations_of(i));
         const double given = known_ev[i] - known_ev[i - lag];
         if (common.shared < least_shared || !std::isfinite(given)) continue;
         seen2 += common.step_ev * common.step_ev, given2 += given * given, both += common.step_ev * given, steps++;

@@ -14,7 +14,7 @@ struct CommonPoints {
     double step_ev = 0.0;  // median change, from grey values as if the response were that of gamma 2.2
 };
 
-CommonPoints common_of(const ClipFrame &first, const ClipFrame &second);
+CommonPoints common_of(const ClipObservations &first, const ClipObservations &second);
 
 // Frames in order, at most `most` of them, of one segment. A keyframe follows where too few scene points of the last
 // one are still seen, or its exposure changed. The share of the points is the smallest that gives 50 keyframes. Of a
