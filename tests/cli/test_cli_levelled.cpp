@@ -334,19 +334,21 @@ void test_transforms(void **) {
     write_picture(data + "/images/00004.png", rendered_black());
     Json content = {{"w", width}, {"h", height}, {"fl_x", 300.125}, {"ply_file_path", "points.ply"}};
     content["frames"] = Json::array();
-    for (uint32_t i = 0; i < moving_frames; i++) {
+    for (uint32_t place = 0; place < moving_frames; place++) {
+        const uint32_t i = place * 7 % moving_frames;  // as COLMAP lists them
         const std::string name = "./images/" + frame_name(i);
         content["frames"].push_back(
             {{"file_path", i % 2 ? name.substr(0, name.size() - 4) : name},
              {"transform_matrix", {{1, 0, 0, i / 7.0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}},
              {"mask_path", "masks/" + frame_name(i)}});
     }
-    content["test_filenames"] = {content["frames"][4]["file_path"], "images/./" + frame_name(7), "images/00009"};
+    content["test_filenames"] = {"./images/00004", "images/./" + frame_name(7), "images/00009"};
     save_text(listed, content.dump());
     const Words words = {"calibrate", data, "-o", in_folder("data_model"), "--no-store", "--frames"};
     const Outcome outcome = run_words(words + Words{in_folder("trained")});
     if (outcome.code != done) fail_msg("%s", outcome.err.c_str());
     assert_true(contains(outcome.err, "trained: left out, because the exposure is not measured: frame_00005.png"));
+    assert_true(contains(outcome.err, "transforms.json: lists the frames in another order than that of the numbers"));
     Json found = parsed(text_of(in_folder("trained/transforms.json")));
     assert_int_equal(found["frames"].size(), moving_frames - 1);
     assert_string_equal(found["test_filenames"].dump().c_str(),
@@ -356,7 +358,7 @@ void test_transforms(void **) {
     for (Json &frame : found["frames"]) {
         const std::string file = frame["file_path"].get<std::string>();
         const size_t number = std::stoul(file.substr(file.find("frame_") + 6)) - 1;
-        assert_true(frame["transform_matrix"] == content["frames"][number]["transform_matrix"]);
+        assert_true(frame["transform_matrix"][0][3] == number / 7.0);
         assert_string_equal(frame["mask_path"].get<std::string>().c_str(),
                             ("../data/masks/" + frame_name(uint32_t(number))).c_str());
         assert_true(fs::exists(in_folder("trained/" + file)));
