@@ -277,6 +277,46 @@ void test_tables_are_kept(void **) {
     assert_string_equal(text_of(in_folder("t_frames/frame_00003.png")).c_str(), "mine");
 }
 
+// What an interrupted run has finished is kept, unless it would become another frame; frames of others are not replaced.
+void test_interrupted_frames(void **) {
+    const std::string source = encoded("still", "i.mkv", "-c:v ffv1 -pix_fmt yuv444p"), out = in_folder("i_frames");
+    const Words words = Words{"deflicker", source, "-o", out} + known;
+    const auto interrupted = [&](const Words &more) {
+        const pid_t child = fork();
+        if (child == 0) {
+            const Words all = Words{LENSPROF_PROGRAM} + words + more;
+            std::vector<char *> arguments;
+            for (const std::string &word : all) arguments.push_back(const_cast<char *>(word.c_str()));
+            arguments.push_back(nullptr);
+            for (const int stream : {1, 2}) dup2(open("/dev/null", O_WRONLY), stream);
+            execv(LENSPROF_PROGRAM, arguments.data());
+            _exit(127);
+        }
+        int status = 0;
+        while (waitpid(child, &status, WNOHANG) == 0)
+            if (fs::exists(out + "/frame_00003.png")) kill(child, SIGINT);
+        return WIFEXITED(status) && WEXITSTATUS(status) == done;
+    };
+    must_exit(done, Words{"deflicker", source, "-o", in_folder("i_whole")} + known);
+    if (interrupted({})) skip();  // it was faster
+    assert_true(fs::exists(out + "/frame_00001.png") && !fs::exists(out + "/frame_00016.png"));
+    save_text(out + "/frame_00015.png", "mine");
+    assert_refused(usage, words, {"frame_00015.png: exists"});
+    fs::remove(out + "/frame_00015.png");
+    const Outcome other = run_words({"deflicker", encoded("still", "j.mkv", "-c:v ffv1 -pix_fmt yuv444p"), "-o", out});
+    assert_int_equal(other.code, usage);
+    const Outcome second = run_words(words);
+    assert_int_equal(second.code, done);
+    assert_true(contains(second.err, "of an interrupted run kept"));
+    for (uint32_t i = 1; i <= still_frames; i++) {
+        char name[32];
+        std::snprintf(name, sizeof name, "/frame_%05u.png", i);
+        assert_true(load(out + name) == load(in_folder("i_whole") + name));
+    }
+    assert_false(fs::exists(out + "/.lensprof-frames"));
+    assert_refused(usage, words, {"frame_00001.png: exists", "--overwrite"});
+}
+
 // A response that sRGB is not is fitted to frames of the video.
 void test_response_is_found(void **) {
     const std::string source = encoded("linear", "linear.mkv", "-c:v ffv1 -pix_fmt yuv444p");
@@ -408,7 +448,7 @@ int main() {
         cmocka_unit_test(test_options_of_frames), cmocka_unit_test(test_response_is_found),
         cmocka_unit_test(test_moving_video),      cmocka_unit_test(test_transforms),
         cmocka_unit_test(test_tables_are_kept),   cmocka_unit_test(test_fields_keep_their_order),
-        cmocka_unit_test(test_other_containers),
+        cmocka_unit_test(test_other_containers),  cmocka_unit_test(test_interrupted_frames),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -58,10 +58,8 @@ void MemoryFile::remove() {
 }
 
 ScratchFile::ScratchFile() {
-    std::string path = temporary_name();
-    file_ = mkstemp(path.data());
-    if (file_ < 0) fail(path);
-    unlink(path.c_str());
+    file_ = open_unnamed(temporary_name());
+    if (file_ < 0) fail(temporary_name());
 }
 
 ScratchFile::~ScratchFile() { close(file_); }
