@@ -258,8 +258,8 @@ void test_refusals(void **) {
                      option[0] + ": is for clips; give one video"));
 }
 
-// A stationary camera is named after a look at every sixth frame: the others, which are damaged here, are not decoded. A
-// clip that moves after a still second is a clip.
+// A stationary camera is named after a look at every sixth frame: the others, which are damaged here, are not decoded.
+// A clip that moves after a still second is a clip.
 void test_still_start(void **) {
     if (!can_read_video()) skip();
     write_frames("tripod_seen", 12, 0.0, false);
@@ -309,9 +309,8 @@ void test_wrong_times_are_named_early(void **) {
     assert_true(contains(refusal(count, [](uint32_t i) { return std::cos(i * i / 7.0); }),
                          "the given exposure times differ from what the frames show by"));
     assert_true(contains(refusal(count, [](uint32_t i) { return 0.0 * i; }), "the given exposure times differ"));
-    const std::string right = refusal(count, [](uint32_t i) {
-        return true_ev(i % (2 * swing) < swing ? i % swing : swing - i % swing);
-    });
+    const std::string right =
+        refusal(count, [](uint32_t i) { return true_ev(i % (2 * swing) < swing ? i % swing : swing - i % swing); });
     assert_false(contains(right, "exposure times"));
     assert_true(contains(right, "00302.png"));
 }
@@ -326,9 +325,14 @@ int set_up(void **state) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_deflicker),        cmocka_unit_test(test_refusals), cmocka_unit_test(test_what_is_kept),
-        cmocka_unit_test(test_deep_grey_frames), cmocka_unit_test(test_still_start),
+        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_video),
+        cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_deflicker),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_what_is_kept),
+        cmocka_unit_test(test_deep_grey_frames),
+        cmocka_unit_test(test_still_start),
         cmocka_unit_test(test_wrong_times_are_named_early),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);

@@ -277,7 +277,8 @@ void test_tables_are_kept(void **) {
     assert_string_equal(text_of(in_folder("t_frames/frame_00003.png")).c_str(), "mine");
 }
 
-// What an interrupted run has finished is kept, unless it would become another frame; frames of others are not replaced.
+// What an interrupted run has finished is kept, unless it would become another frame; frames of others are not
+// replaced.
 void test_interrupted_frames(void **) {
     const std::string source = encoded("still", "i.mkv", "-c:v ffv1 -pix_fmt yuv444p"), out = in_folder("i_frames");
     const Words words = Words{"deflicker", source, "-o", out} + known;

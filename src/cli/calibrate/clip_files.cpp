@@ -6,7 +6,6 @@
 
 #include "cli/correct/exposure_chart.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
@@ -62,8 +61,7 @@ std::string exposure_table(const ClipTracks &clip) {
                            frame.exposure.white_balance[2]);
         else
             text += ",,,";
-        text +=
-            format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations, frame.mean_level);
+        text += format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations, frame.mean_level);
     }
     return text;
 }
@@ -148,14 +146,6 @@ std::vector<double> GivenTimes::of_first(const ClipTracks &clip) const {
     for (const ClipFrame &frame : clip.frames)
         if (uses_all_frames_ && frame.number < lines_.size()) known_ev.push_back(lines_[frame.number].ev);
     return known_ev;
-}
-
-double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev) {
-    std::vector<double> offsets;
-    for (size_t i = 0; i < known_ev.size(); i++)
-        if (clip.frames[i].state == ClipState::measured && std::isfinite(known_ev[i]))
-            offsets.push_back(known_ev[i] - clip.frames[i].exposure.ev);
-    return upper_median(offsets);
 }
 
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,

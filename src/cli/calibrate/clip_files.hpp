@@ -21,7 +21,8 @@ bool has_clip_files(const std::string &folder);
 class GivenTimes {
 public:
     // Reads the file; an empty path has no lines. Failure (unreadable) with the line, and for a number of lines that is
-    // not that of the frames. There is a line for each frame of the clip or, of a part of the frames, for each of those.
+    // not that of the frames. There is a line for each frame of the clip or, of a part of the frames, for each of
+    // those.
     GivenTimes(const std::string &path, const VideoInfo &info, bool uses_all_frames);
 
     // EV per frame, NaN where its line states none; empty: none is known.
@@ -38,9 +39,6 @@ private:
     std::vector<TimesLine> lines_;
     bool uses_all_frames_;
 };
-
-// The EV that is added to an exposure of the clip to get log2 of the known exposure time; 0 if none is known.
-double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
 
 // pcalib.txt and vignette.png (16 bit, of the frame's size), which DSO and its kin read. Returns their names.
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,

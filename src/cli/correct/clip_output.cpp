@@ -81,7 +81,11 @@ bool is_video_output(const std::string &path) { return !is_folder(path) && is_vi
 
 ClipOutput::ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
                        const ClipCodec &codec, bool overwrite, Events &events)
-    : events_(events), source_(source), path_(path), suffix_(codec.name == "jpeg" ? ".jpg" : ".png"), quality_(codec.quality) {
+    : events_(events),
+      source_(source),
+      path_(path),
+      suffix_(codec.name == "jpeg" ? ".jpg" : ".png"),
+      quality_(codec.quality) {
     const bool is_video = is_video_output(path);
     if (is_same_file(source, path))
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": is the input; give the output another name");

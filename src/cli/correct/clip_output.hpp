@@ -30,8 +30,8 @@ bool is_video_output(const std::string &path);
 class ClipOutput {
 public:
     // Failure before anything is measured: of VideoWriter, and (usage) for an output that would replace the source or
-    // one of `inputs`, or, without `overwrite`, a video or frames that exist, unless an interrupted run of the same clip
-    // wrote them: those are kept where they are as they would be written; (failed) for a folder that cannot be
+    // one of `inputs`, or, without `overwrite`, a video or frames that exist, unless an interrupted run of the same
+    // clip wrote them: those are kept where they are as they would be written; (failed) for a folder that cannot be
     // written.
     ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
                const ClipCodec &codec, bool overwrite, Events &events);

@@ -10,7 +10,7 @@ namespace lensprof {
 namespace {
 
 constexpr size_t first_look = 300;  // frames
-constexpr int patch_side = 7;  // px of the reduced frame
+constexpr int patch_side = 7;       // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
 
 // Sums of a channel over the samples of a patch.

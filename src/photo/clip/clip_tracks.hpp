@@ -60,8 +60,8 @@ struct ClipTracks {
 };
 
 // Decodes the clip once, and holds one frame at a time; the observations, about 9 kB per frame, wait on disk. Follows
-// scene points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still start
-// is not followed (`is_static`). `look` is called once, after 300 measured frames, and may throw.
+// scene points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still
+// start is not followed (`is_static`). `look` is called once, after 300 measured frames, and may throw.
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
                       const std::function<void(const ClipTracks &)> &look);
 

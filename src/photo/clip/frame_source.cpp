@@ -35,8 +35,9 @@ public:
         files_ = transforms_ ? transforms_->files : find_sweep(folder, events).files;
         if (files_.empty()) throw Failure(LENSPROF_ERROR_READ, folder + ": has no pictures; give a folder with frames");
         if (transforms_ && transforms_->is_sorted)
-            events.note(transforms_path(folder), "lists the frames in another order than that of the numbers in their "
-                                                 "names, in which they are read and written");
+            events.note(transforms_path(folder),
+                        "lists the frames in another order than that of the numbers in their "
+                        "names, in which they are read and written");
         const Picture header = read_header(files_[0]);
         if (transforms_) check_stated_size(*transforms_, header.width, header.height);
         const PictureMetadata metadata = read_metadata(files_[0]);

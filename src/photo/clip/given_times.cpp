@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/quantile.hpp"
 #include "photo/base/format.hpp"
 #include "photo/clip/keyframes.hpp"
 
 namespace lensprof {
 
 void refuse_times(const ClipTracks &clip, double rms_ev) {
-    throw Failure(
-        LENSPROF_ERROR_NOT_USABLE,
-        clip.path
-            + format(": the given exposure times differ from what the frames show by %.2f EV (rms); check "
-                     "that each line belongs to its frame, or leave out the times",
-                     rms_ev),
-        LENSPROF_REASON_KNOWN_CONTRADICT);
+    throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                  clip.path
+                      + format(": the given exposure times differ from what the frames show by %.2f EV (rms); check "
+                               "that each line belongs to its frame, or leave out the times",
+                               rms_ev),
+                  LENSPROF_REASON_KNOWN_CONTRADICT);
 }
 
 void check_times_early(const ClipTracks &clip, const std::vector<double> &known_ev) {
@@ -34,6 +34,14 @@ void check_times_early(const ClipTracks &clip, const std::vector<double> &known_
     const double scale = std::clamp(both / seen2, least_scale, most_scale);
     const double rms_ev = std::sqrt(std::max(0.0, given2 - 2.0 * scale * both + scale * scale * seen2) / steps);
     if (rms_ev > least_ev && rms_ev > unexplained * std::sqrt(given2 / steps)) refuse_times(clip, rms_ev);
+}
+
+double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev) {
+    std::vector<double> offsets;
+    for (size_t i = 0; i < known_ev.size(); i++)
+        if (clip.frames[i].state == ClipState::measured && std::isfinite(known_ev[i]))
+            offsets.push_back(known_ev[i] - clip.frames[i].exposure.ev);
+    return upper_median(offsets);
 }
 
 }  // namespace lensprof

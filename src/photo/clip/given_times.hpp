@@ -12,4 +12,7 @@ namespace lensprof {
 // are the changes over 16 frames, with whatever exponent makes them most alike, because the response is not known yet.
 void check_times_early(const ClipTracks &clip, const std::vector<double> &known_ev);
 
+// The EV that is added to an exposure of the clip to get log2 of the known exposure time; 0 if none is known.
+double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
+
 }  // namespace lensprof
