@@ -15,7 +15,9 @@ struct Ended {
     std::string err;
 };
 
-inline Ended run_program(const Words &words) {
+// `prepare` changes the new process: another limit, other processors.
+inline Ended run_program(
+    const Words &words, const std::function<void()> &prepare = [] {}) {
     int ends[2];
     assert_int_equal(pipe(ends), 0);
     const pid_t child = fork();
@@ -25,6 +27,7 @@ inline Ended run_program(const Words &words) {
         arguments.push_back(nullptr);
         dup2(open("/dev/null", O_WRONLY), 1);
         dup2(ends[1], 2);
+        prepare();
         execv(LENSPROF_PROGRAM, arguments.data());
         _exit(127);
     }

@@ -243,6 +243,12 @@ void test_refusals(void **) {
     assert_true(
         contains(run_words({"calibrate", in_folder("moving"), in_folder("brief"), "-o", in_folder("nothing")}).err,
                  "moving: is a clip, which is calibrated alone"));
+    const char *const temporary = std::getenv("TMPDIR");
+    const std::string usual = temporary ? temporary : "/tmp";
+    setenv("TMPDIR", in_folder("none").c_str(), 1);  // where scene points wait
+    assert_refused(failed, {"calibrate", in_folder("brief"), "-o", in_folder("nothing"), "--no-store"},
+                   {"none/lensprof-", "set TMPDIR to a folder with space"});
+    setenv("TMPDIR", usual.c_str(), 1);
     std::ofstream(in_folder("junk.mp4")) << "not a video";
     assert_true(contains(run_words({"calibrate", in_folder("junk.mp4"), "-o", in_folder("nothing")}).err,
                          "junk.mp4: is not a video, or its beginning is damaged"));
@@ -250,6 +256,63 @@ void test_refusals(void **) {
         assert_true(
             contains(run_words(Words{"calibrate", in_folder("few.txt"), "-o", in_folder("nothing")} + option).err,
                      option[0] + ": is for clips; give one video"));
+}
+
+// A stationary camera is named after a look at every sixth frame: the others, which are damaged here, are not decoded.
+// A clip that moves after a still second is a clip.
+void test_still_start(void **) {
+    if (!can_read_video()) skip();
+    write_frames("tripod_seen", 12, 0.0, false);
+    fs::create_directories(folder / "long_still");
+    const std::string damaged = text_of(in_folder("tripod_seen/images/00001.png")).substr(0, 3000);
+    for (uint32_t i = 0; i < 130; i++) {
+        const std::string name = in_folder("long_still/" + frame_name(i));
+        if (i % 6 == 0)
+            fs::copy_file(in_folder("tripod_seen/images/" + frame_name(i / 6 % 12)), name);
+        else
+            save_text(name, damaged);
+    }
+    const Outcome still =
+        run_words({"calibrate", in_folder("long_still"), "--moving", "-o", in_folder("nothing"), "--no-store"});
+    assert_int_equal(still.code, not_usable);
+    assert_true(contains(still.err, "does not move in the first 121 frames, which"));
+    fs::create_directories(folder / "late_start");
+    for (uint32_t i = 0; i < 24 + frames; i++)
+        fs::copy_file(in_folder("moving/images/" + frame_name(i < 24 ? 0 : i - 24)),
+                      in_folder("late_start/" + frame_name(i)));
+    must_exit(done, {"calibrate", in_folder("late_start"), "--moving", "-o", in_folder("late"), "--no-store"});
+}
+
+// Wrong times are named before later frames are read, here damaged ones: by the number of lines, and by their changes.
+void test_wrong_times_are_named_early(void **) {
+    if (!can_read_video()) skip();
+    constexpr uint32_t count = 310, swing = frames - 1;  // to and fro
+    const auto place = [](uint32_t i) { return i % (2 * swing) < swing ? i % swing : swing - i % swing; };
+    fs::create_directories(folder / "swing");
+    for (uint32_t i = 0; i < count; i++) {
+        const std::string name = in_folder("swing/" + frame_name(i));
+        if (i < 302)
+            fs::copy_file(in_folder("moving/images/" + frame_name(place(i))), name);
+        else
+            save_text(name, text_of(in_folder("moving/images/00000.png")).substr(0, 3000));
+    }
+    const auto refusal = [&](uint32_t lines, double (*ev)(uint32_t)) {
+        std::ofstream times(in_folder("swing.txt"));
+        for (uint32_t i = 0; i < lines; i++) times << i << " " << i << " " << 10.0 * std::exp2(ev(i)) << "\n";
+        times.close();
+        const Outcome outcome = run_words({"calibrate", in_folder("swing"), "--moving", "-o", in_folder("nothing"),
+                                           "--times", in_folder("swing.txt"), "--no-store"});
+        assert_true(outcome.code != done);
+        return outcome.err;
+    };
+    assert_true(contains(refusal(count - 1, true_ev), "swing.txt: has 309 lines, but the clip has 310 frames"));
+    assert_true(contains(refusal(count, [](uint32_t i) { return std::cos(i * i / 7.0); }),
+                         "the given exposure times differ from what the frames show by"));
+    assert_true(contains(refusal(count, [](uint32_t i) { return 0.0 * i; }), "the given exposure times differ"));
+    const std::string right =
+        refusal(count, [](uint32_t i) { return true_ev(i % (2 * swing) < swing ? i % swing : swing - i % swing); });
+    assert_false(contains(right, "exposure times"));
+    assert_true(contains(right, "00302.png"));
 }
 
 int set_up(void **state) {
@@ -262,9 +325,15 @@ int set_up(void **state) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),    cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_deflicker),        cmocka_unit_test(test_refusals), cmocka_unit_test(test_what_is_kept),
+        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_video),
+        cmocka_unit_test(test_scenes),
+        cmocka_unit_test(test_deflicker),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_what_is_kept),
         cmocka_unit_test(test_deep_grey_frames),
+        cmocka_unit_test(test_still_start),
+        cmocka_unit_test(test_wrong_times_are_named_early),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

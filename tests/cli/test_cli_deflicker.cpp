@@ -42,15 +42,21 @@ void write_frame(const std::string &file, double ev, double shift = 0.0, uint32_
 
 double flicker_ev(size_t i) { return 0.15 * std::sin(2.3 * double(i)) + 0.05 * std::cos(5.1 * double(i)); }
 
-// Names of the frames of a folder made for this test.
-Words make_frames(const std::string &folder, size_t count, double shift = 0.0, const char *extension = ".png") {
+// Names of the frames of a folder made for this test, of a camera that is at `place`(frame), px.
+template <class Place>
+Words make_frames_at(const std::string &folder, size_t count, const Place &place, const char *extension = ".png") {
     fs::create_directories(work(folder));
     Words files;
     for (size_t i = 0; i < count; i++) {
         files.push_back(name_of(folder, i, extension));
-        write_frame(files.back(), flicker_ev(i), shift * double(i));
+        write_frame(files.back(), flicker_ev(i), place(double(i)));
     }
     return files;
+}
+
+Words make_frames(const std::string &folder, size_t count, double shift = 0.0, const char *extension = ".png") {
+    return make_frames_at(
+        folder, count, [&](double i) { return shift * i; }, extension);
 }
 
 double mean_ev(const std::string &file) {
@@ -174,6 +180,26 @@ void test_frames_left_out(void **) {
     assert_false(fs::exists(name_of("odd-out", 4)) || fs::exists(name_of("odd-out", 6)));
 }
 
+// A camera that walks is named, also where it could be followed; a tripod that is bumped or in the wind is not, nor a
+// slider.
+void test_walking_camera(void **) {
+    const auto message_of = [](const std::string &folder, double (*place)(double)) {
+        make_frames_at(folder, 26, place);
+        const Outcome outcome = run_words({"deflicker", work(folder), "-o", work(folder + "-out"), "--write", "csv"});
+        assert_int_equal(outcome.code, done);
+        return outcome.err;
+    };
+    for (const std::string &named : {message_of("hand", [](double i) { return 0.35 * i + 0.5 * std::sin(1.7 * i); }),
+                                     message_of("pan", [](double i) { return 0.8 * i; })}) {
+        assert_true(contains(named, "f0.png: the camera moves by 0."));
+        assert_true(contains(named, "those of `lensprof calibrate FOLDER --moving`"));
+    }
+    for (const std::string &quiet : {message_of("slider", [](double i) { return 0.35 * i; }),
+                                     message_of("bump", [](double i) { return i > 9.0 ? 12.0 : 0.0; }),
+                                     message_of("wind", [](double i) { return 0.7 * std::sin(2.3 * i); })})
+        assert_false(contains(quiet, "the camera moves"));
+}
+
 void test_refusals(void **) {
     const Words files = make_frames("bad", 3), moving = make_frames("moving", 14, 5.0);
     const Words to = {"-o", work("bad-out")};
@@ -207,6 +233,7 @@ int main() {
         CLI_TEST(test_sixteen_bits_stay),
         CLI_TEST(test_settings_of_converters),
         CLI_TEST(test_frames_left_out),
+        CLI_TEST(test_walking_camera),
         CLI_TEST(test_refusals),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

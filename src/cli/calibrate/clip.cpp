@@ -17,6 +17,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/outcome.hpp"
+#include "photo/clip/given_times.hpp"
 #include "photo/clip/transforms_file.hpp"
 
 namespace lensprof {
@@ -161,19 +162,11 @@ std::string times_file(const ClipCommand &o) {
     return path_exists(times) ? times : std::string();
 }
 
-ClipOptions options_of_clip(const std::string &times, const ClipTracks &clip) {
-    ClipOptions options;
-    if (!times.empty()) options.known_ev = read_clip_times(times, clip);
-    if (std::none_of(options.known_ev.begin(), options.known_ev.end(), [](double ev) { return std::isfinite(ev); }))
-        options.known_ev.clear();
-    return options;
-}
-
 void check_clip(const ClipTracks &clip) {
+    if (clip.frames_in_clip > 1 && clip.is_static()) refuse_static(clip);
     if (clip.frames.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, clip.path + ": has only one frame; give a clip of a moving camera",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (clip.is_static()) refuse_static(clip);
 }
 
 // Stores the profile after all files, if the clip states a camera.
@@ -226,9 +219,13 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     if (!times.empty()) inputs.push_back(times);
     check_conflicts(o, inputs);
     const auto levelled = open_levelled(o, inputs, events);
-    ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events);
+    const GivenTimes given(times, source->info(), is_of_pictures || o.frames_per_s <= 0.0);
+    ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events,
+                                 [&](const ClipTracks &first) { check_times_early(first, given.of_first(first)); });
     check_clip(clip);
-    const ClipOptions options = options_of_clip(times, clip);
+    ClipOptions options;
+    options.known_ev = given.of(clip);
+    check_times_early(clip, options.known_ev);
     const lensprof_profile_key key = clip_key(clip.info);
     ClipFit fit = fit_clip(options, key, clip, events);
     check_wanted(o, clip);

@@ -12,7 +12,6 @@
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/clip/frame_source.hpp"
-#include "photo/scene/exposure_times.hpp"
 
 namespace lensprof {
 namespace {
@@ -62,24 +61,9 @@ std::string exposure_table(const ClipTracks &clip) {
                            frame.exposure.white_balance[2]);
         else
             text += ",,,";
-        text +=
-            format(",%d,%d,%zu,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations.size(), frame.mean_level);
+        text += format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations, frame.mean_level);
     }
     return text;
-}
-
-// The time stamps of lines and of a video span the same time, in seconds, milliseconds, microseconds or nanoseconds.
-void check_time_stamps(const std::string &path, const std::vector<TimesLine> &lines, const ClipTracks &clip) {
-    const double stated = lines.back().time_stamp - lines.front().time_stamp,
-                 seen_s = clip.frames.back().seconds - clip.frames.front().seconds;
-    for (const double unit : {1.0, 1e3, 1e6, 1e9})
-        if (std::abs(stated / unit - seen_s) < 0.1 * seen_s) return;
-    throw Failure(
-        LENSPROF_ERROR_READ,
-        path
-            + format(": its time stamps span %.6g, but the frames of %s %.6g s; give the file that belongs to "
-                     "the clip, or the clip's own time stamps",
-                     stated, clip.path.c_str(), seen_s));
 }
 
 }  // namespace
@@ -114,31 +98,54 @@ const char *clip_state_name(ClipState state) {
     return state == ClipState::measured ? "measured" : state == ClipState::blank ? "blank" : "unlinked";
 }
 
-std::vector<double> read_clip_times(const std::string &path, const ClipTracks &clip) {
-    const std::vector<TimesLine> lines = read_times_lines(path);
-    if (lines.size() != clip.frames_in_clip && lines.size() != clip.frames.size())
-        throw Failure(LENSPROF_ERROR_READ,
-                      path
-                          + format(": has %zu lines, but the clip has %llu frames; give a line for "
-                                   "each frame",
-                                   lines.size(), static_cast<unsigned long long>(clip.frames_in_clip)));
-    if (lines.size() == clip.frames_in_clip && clip.frames.size() == clip.frames_in_clip && !is_folder(clip.path))
-        check_time_stamps(path, lines, clip);
-    std::vector<double> of_frames;
-    for (size_t i = 0; i < clip.frames.size(); i++)
-        of_frames.push_back(lines[lines.size() == clip.frames_in_clip ? clip.frames[i].number : i].ev);
-    return of_frames;
+GivenTimes::GivenTimes(const std::string &path, const VideoInfo &info, bool uses_all_frames)
+    : path_(path), uses_all_frames_(uses_all_frames) {
+    if (path.empty()) return;
+    lines_ = read_times_lines(path);
+    // Containers may count frames that are not shown.
+    const double tolerance = info.codec == pictures_codec ? 0.0 : 10.0 + 0.05 * double(info.frames);
+    if (uses_all_frames && info.frames > 0 && std::abs(double(lines_.size()) - double(info.frames)) > tolerance)
+        fail_count(info.frames);
 }
 
-double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev) {
-    std::vector<double> offsets;
-    for (size_t i = 0; i < known_ev.size(); i++)
-        if (clip.frames[i].state == ClipState::measured && std::isfinite(known_ev[i]))
-            offsets.push_back(known_ev[i] - clip.frames[i].exposure.ev);
-    if (offsets.empty()) return 0.0;
-    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-    std::nth_element(offsets.begin(), middle, offsets.end());
-    return *middle;
+void GivenTimes::fail_count(uint64_t frames) const {
+    throw Failure(LENSPROF_ERROR_READ, path_
+                                           + format(": has %zu lines, but the clip has %llu frames; give a line for "
+                                                    "each frame",
+                                                    lines_.size(), static_cast<unsigned long long>(frames)));
+}
+
+// The time stamps of lines and of a video span the same time, in seconds, milliseconds, microseconds or nanoseconds.
+void GivenTimes::check_time_stamps(const ClipTracks &clip) const {
+    const double stated = lines_.back().time_stamp - lines_.front().time_stamp,
+                 seen_s = clip.frames.back().seconds - clip.frames.front().seconds;
+    for (const double unit : {1.0, 1e3, 1e6, 1e9})
+        if (std::abs(stated / unit - seen_s) < 0.1 * seen_s) return;
+    throw Failure(
+        LENSPROF_ERROR_READ,
+        path_
+            + format(": its time stamps span %.6g, but the frames of %s %.6g s; give the file that belongs to "
+                     "the clip, or the clip's own time stamps",
+                     stated, clip.path.c_str(), seen_s));
+}
+
+std::vector<double> GivenTimes::of(const ClipTracks &clip) const {
+    if (lines_.empty()) return {};
+    const bool are_of_all = lines_.size() == clip.frames_in_clip;
+    if (!are_of_all && lines_.size() != clip.frames.size()) fail_count(clip.frames_in_clip);
+    if (are_of_all && clip.frames.size() == clip.frames_in_clip && !is_folder(clip.path)) check_time_stamps(clip);
+    std::vector<double> known_ev;
+    for (size_t i = 0; i < clip.frames.size(); i++)
+        known_ev.push_back(lines_[are_of_all ? clip.frames[i].number : i].ev);
+    if (std::none_of(known_ev.begin(), known_ev.end(), [](double ev) { return std::isfinite(ev); })) return {};
+    return known_ev;
+}
+
+std::vector<double> GivenTimes::of_first(const ClipTracks &clip) const {
+    std::vector<double> known_ev;
+    for (const ClipFrame &frame : clip.frames)
+        if (uses_all_frames_ && frame.number < lines_.size()) known_ev.push_back(lines_[frame.number].ev);
+    return known_ev;
 }
 
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,

@@ -7,6 +7,7 @@
 #include "photo/base/output_file.hpp"
 #include "photo/clip/clip_calibration.hpp"
 #include "photo/report/report.hpp"
+#include "photo/scene/exposure_times.hpp"
 
 namespace lensprof {
 
@@ -16,13 +17,28 @@ std::vector<std::string> clip_files(const std::string &folder);
 // Whether an earlier run wrote the files of the folder, by the first line of its exposures.csv.
 bool has_clip_files(const std::string &folder);
 
-// Exposure times of frames, from a file of lines "name time_stamp exposure" as of the TUM mono dataset: EV per frame,
-// NaN where the line states none. There is a line for each frame of the clip or, of a part of the frames, for each of
-// those. Failure (unreadable) with the line.
-std::vector<double> read_clip_times(const std::string &path, const ClipTracks &clip);
+// Exposure times of the frames of a clip, from a file of lines "name time_stamp exposure" as of the TUM mono dataset.
+class GivenTimes {
+public:
+    // Reads the file; an empty path has no lines. Failure (unreadable) with the line, and for a number of lines that is
+    // not that of the frames. There is a line for each frame of the clip or, of a part of the frames, for each of
+    // those.
+    GivenTimes(const std::string &path, const VideoInfo &info, bool uses_all_frames);
 
-// The EV that is added to an exposure of the clip to get log2 of the known exposure time; 0 if none is known.
-double offset_of_times(const ClipTracks &clip, const std::vector<double> &known_ev);
+    // EV per frame, NaN where its line states none; empty: none is known.
+    std::vector<double> of(const ClipTracks &clip) const;
+
+    // The same while frames are still being read; empty for a part of the frames.
+    std::vector<double> of_first(const ClipTracks &clip) const;
+
+private:
+    void check_time_stamps(const ClipTracks &clip) const;
+    [[noreturn]] void fail_count(uint64_t frames) const;
+
+    std::string path_;
+    std::vector<TimesLine> lines_;
+    bool uses_all_frames_;
+};
 
 // pcalib.txt and vignette.png (16 bit, of the frame's size), which DSO and its kin read. Returns their names.
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,

@@ -5,15 +5,18 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/program/numbers.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/folder/ledger.hpp"
 
 namespace lensprof {
 namespace {
@@ -78,7 +81,11 @@ bool is_video_output(const std::string &path) { return !is_folder(path) && is_vi
 
 ClipOutput::ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
                        const ClipCodec &codec, bool overwrite, Events &events)
-    : path_(path), suffix_(codec.name == "jpeg" ? ".jpg" : ".png"), quality_(codec.quality) {
+    : events_(events),
+      source_(source),
+      path_(path),
+      suffix_(codec.name == "jpeg" ? ".jpg" : ".png"),
+      quality_(codec.quality) {
     const bool is_video = is_video_output(path);
     if (is_same_file(source, path))
         throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": is the input; give the output another name");
@@ -119,10 +126,50 @@ void ClipOutput::check_frames(const std::vector<std::string> &inputs, bool overw
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           entry->path().string() + ": is a frame of the input; give the output another name");
     }
-    if (!older_.empty() && !overwrite)
-        throw Failure(
-            LENSPROF_ERROR_ARGUMENT,
-            *older_.begin() + ": exists; give the folder another name, or replace its frames with --overwrite");
+    if (!overwrite) read_ledger();
+    const auto is_own = [&](const std::string &file) {
+        return finished_.count(std::filesystem::path(file).filename().string()) > 0;
+    };
+    const auto foreign = std::find_if_not(older_.begin(), older_.end(), is_own);
+    if (foreign != older_.end() && !overwrite)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      *foreign + ": exists; give the folder another name, or replace its frames with --overwrite");
+}
+
+// Names of the frames that are begun, and again with their digest when they are finished: an interrupted run leaves it.
+std::string ClipOutput::ledger() const { return (std::filesystem::path(path_) / ".lensprof-frames").string(); }
+
+void ClipOutput::read_ledger() {
+    if (!is_regular_file(ledger())) return;
+    std::istringstream lines(read_text(ledger(), max_text_bytes));
+    std::string source, name, digest;
+    if (!std::getline(lines, source) || source != canonical_path(source_)) return;
+    while (lines >> name >> digest) finished_[name] = digest;
+}
+
+// Writes it, unless it is there, whole, from an interrupted run.
+void ClipOutput::write_picture_of(size_t index, Picture &picture) {
+    const std::string name = name_of(index), file = (std::filesystem::path(path_) / name).string();
+    const std::string digest = digest_of_text(format("%d %u %u ", quality_, picture.width, picture.height)
+                                              + std::string(picture.pixels.begin(), picture.pixels.end()));
+    older_.erase(file);
+    if (const auto found = finished_.find(name);
+        found != finished_.end() && found->second == digest && is_regular_file(file)) {
+        kept_++;
+        return;
+    }
+    make_folder(path_);
+    picture.traits = PictureTraits();
+    WriteOptions options;
+    options.jpeg_quality = std::max(quality_, 0);
+    const bool is_reduced = suffix_ == ".jpg" && picture.sample == LENSPROF_SAMPLE_U16;
+    if (!lines_.is_open()) {
+        lines_.open(ledger(), finished_.empty() ? std::ios::trunc : std::ios::app);
+        if (finished_.empty()) lines_ << canonical_path(source_) << "\n";
+    }
+    lines_ << name << " -" << std::endl;
+    write_picture(file, is_reduced ? with_8_bits(picture) : picture, options);
+    lines_ << name << " " << digest << std::endl;
 }
 
 std::string ClipOutput::name_of(size_t index) const { return format("%s%05zu", frame_prefix, index + 1) + suffix_; }
@@ -143,14 +190,7 @@ void ClipOutput::write_unchanged(size_t index, size_t count, VideoFrame &frame) 
         writer_->write(frame, count);
         return;
     }
-    make_folder(path_);
-    frame.picture.traits = PictureTraits();
-    WriteOptions options;
-    options.jpeg_quality = std::max(quality_, 0);
-    const bool is_reduced = suffix_ == ".jpg" && frame.picture.sample == LENSPROF_SAMPLE_U16;
-    const std::string file = (std::filesystem::path(path_) / name_of(index)).string();
-    write_picture(file, is_reduced ? with_8_bits(frame.picture) : frame.picture, options);
-    older_.erase(file);
+    write_picture_of(index, frame.picture);
 }
 
 void ClipOutput::finish() {
@@ -158,6 +198,10 @@ void ClipOutput::finish() {
     std::error_code ignored;
     for (const std::string &file : older_) std::filesystem::remove(file, ignored);
     older_.clear();
+    if (writer_) return;
+    lines_.close();
+    std::filesystem::remove(ledger(), ignored);
+    if (kept_ > 0) events_.note(path_, counted(kept_, "frame") + " of an interrupted run kept");
 }
 
 Json ClipOutput::json() const {

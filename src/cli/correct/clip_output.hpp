@@ -1,6 +1,8 @@
 // Where levelled frames of a clip go: pictures in a folder, or a video.
 #pragma once
 
+#include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -28,7 +30,8 @@ bool is_video_output(const std::string &path);
 class ClipOutput {
 public:
     // Failure before anything is measured: of VideoWriter, and (usage) for an output that would replace the source or
-    // one of `inputs`, or, without `overwrite`, a video or frames that exist; (failed) for a folder that cannot be
+    // one of `inputs`, or, without `overwrite`, a video or frames that exist, unless an interrupted run of the same
+    // clip wrote them: those are kept where they are as they would be written; (failed) for a folder that cannot be
     // written.
     ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
                const ClipCodec &codec, bool overwrite, Events &events);
@@ -40,7 +43,9 @@ public:
     void write_levelled(size_t index, size_t count, const lensprof_profile &model, const lensprof_exposure &measured,
                         const lensprof_exposure &wanted, VideoFrame &frame);
     void write_unchanged(size_t index, size_t count, VideoFrame &frame);
-    void finish();  // frames of an earlier run that this one did not replace are removed
+
+    // Frames of an earlier run that this one did not replace are removed.
+    void finish();
 
     Json json() const;         // codec and loss of a video; null for a folder
     std::string text() const;  // the same for people
@@ -48,9 +53,16 @@ public:
 
 private:
     void check_frames(const std::vector<std::string> &inputs, bool overwrite);
+    std::string ledger() const;
+    void read_ledger();
+    void write_picture_of(size_t index, Picture &picture);
 
-    std::string path_, suffix_;
-    std::set<std::string> older_;  // frames in the folder that this run has not written
+    Events &events_;
+    std::string source_, path_, suffix_;
+    std::set<std::string> older_;                  // frames in the folder that this run has not written
+    std::map<std::string, std::string> finished_;  // by an interrupted run of this source: digests of the pixels
+    std::ofstream lines_;                          // of the ledger
+    size_t kept_ = 0;                              // of those
     int quality_;
     std::unique_ptr<VideoWriter> writer_;
     std::optional<VideoLoss> loss_;

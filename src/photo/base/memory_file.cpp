@@ -57,6 +57,36 @@ void MemoryFile::remove() {
     if (is_named_) unlink(path_.c_str());
 }
 
+ScratchFile::ScratchFile() {
+    file_ = open_unnamed(temporary_name());
+    if (file_ < 0) fail(temporary_name());
+}
+
+ScratchFile::~ScratchFile() { close(file_); }
+
+uint64_t ScratchFile::append(const void *data, size_t size) {
+    const auto *from = static_cast<const uint8_t *>(data);
+    const uint64_t begin = size_;
+    for (size_t done = 0; done < size;) {
+        const ssize_t written = pwrite(file_, from + done, size - done, static_cast<off_t>(begin + done));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) fail("intermediate results");
+        done += static_cast<size_t>(written);
+    }
+    size_ += size;
+    return begin;
+}
+
+void ScratchFile::read(uint64_t begin, void *data, size_t size) const {
+    auto *to = static_cast<uint8_t *>(data);
+    for (size_t done = 0; done < size;) {
+        const ssize_t got = pread(file_, to + done, size - done, static_cast<off_t>(begin + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) fail("intermediate results");
+        done += static_cast<size_t>(got);
+    }
+}
+
 TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {
     if (!mkdtemp(path_.data())) fail(path_);
 }

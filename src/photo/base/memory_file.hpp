@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace lensprof {
@@ -22,6 +23,22 @@ private:
     int file_ = -1;
     bool is_named_ = false;
     std::string path_;
+};
+
+// Bytes that wait on disk instead of in memory: a file without a name in TMPDIR, of which nothing is left.
+class ScratchFile {
+public:
+    ScratchFile();  // Failure (WRITE)
+    ~ScratchFile();
+    ScratchFile(const ScratchFile &) = delete;
+    ScratchFile &operator=(const ScratchFile &) = delete;
+
+    uint64_t append(const void *data, size_t size);           // returns where it is; Failure (WRITE)
+    void read(uint64_t from, void *data, size_t size) const;  // what was appended there; Failure (WRITE)
+
+private:
+    int file_ = -1;
+    uint64_t size_ = 0;
 };
 
 // An empty folder of its own, removed with its files.

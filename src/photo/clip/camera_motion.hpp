@@ -3,9 +3,21 @@
 
 #include <vector>
 
+#include "photo/clip/frame_source.hpp"
 #include "photo/video/tracker.hpp"
 
 namespace lensprof {
+
+constexpr double still_travel = 0.01;  // half diagonals that scene points move at most in front of a still camera
+
+// Frames from the beginning in which nothing moves.
+struct StillStart {
+    uint64_t frames = 0, shown = 0;  // shown: neither black nor white
+};
+
+// The first 120 frames, of 3 s or more, that are neither black nor white, if nothing moves in them; else none. Every
+// sixth is looked at, up to the first that shows motion.
+StillStart find_still_start(const FrameSource &source);
 
 class CameraMotion {
 public:

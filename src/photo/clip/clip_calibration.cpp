@@ -8,6 +8,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/lap.hpp"
 #include "photo/clip/clip_exposures.hpp"
+#include "photo/clip/given_times.hpp"
 #include "photo/clip/keyframes.hpp"
 
 namespace lensprof {
@@ -44,7 +45,7 @@ std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
                                                         const std::vector<uint32_t> &keyframes) {
     std::map<uint32_t, std::vector<lensprof_observation>> points;
     for (uint32_t k = 0; k < keyframes.size(); k++)
-        for (const ClipObservation &seen : clip.frames[keyframes[k]].observations) {
+        for (const ClipObservation &seen : clip.observations_of(keyframes[k])) {
             if (std::isnan(seen.value[0]) || std::isnan(seen.value[1]) || std::isnan(seen.value[2])) continue;
             points[seen.track].push_back({seen.track,
                                           k,
@@ -93,14 +94,7 @@ void check_exposures(const ClipFit &fit, const ClipTracks &clip) {
                                    "which line belongs to which frame",
                                    shift > 0 ? "up" : "down", counted(size_t(std::abs(shift)), "line").c_str()),
                       LENSPROF_REASON_KNOWN_CONTRADICT);
-    if (fit.known.rms_ev > largest_known_error_ev)
-        throw Failure(
-            LENSPROF_ERROR_NOT_USABLE,
-            clip.path
-                + format(": the given exposure times differ from what the frames show by %.2f EV (rms); check "
-                         "that each line belongs to its frame, or leave out the times",
-                         fit.known.rms_ev),
-            LENSPROF_REASON_KNOWN_CONTRADICT);
+    if (fit.known.rms_ev > largest_known_error_ev) refuse_times(clip, fit.known.rms_ev);
     constexpr double largest_ev = 0.03;
     const double error_ev = contradiction_ev(fit, clip);
     if (fit.best.corrects() && error_ev > largest_ev)

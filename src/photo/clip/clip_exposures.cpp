@@ -22,9 +22,15 @@ struct Light {
     std::array<double, 3> ev, variance;
 };
 
-std::vector<Light> lights_of(const ClipFrame &frame, const ClipModel &model, const VideoInfo &info) {
+// What a frame shows.
+struct Seen {
+    ClipObservations observations;
     std::vector<Light> lights;
-    for (const ClipObservation &observation : frame.observations) {
+};
+
+std::vector<Light> lights_of(const ClipObservations &observations, const ClipModel &model, const VideoInfo &info) {
+    std::vector<Light> lights;
+    for (const ClipObservation &observation : observations) {
         Light light{{NAN, NAN, NAN}, {}};
         for (size_t c = 0; c < 3; c++) {
             const double value = observation.value[c];
@@ -65,13 +71,11 @@ bool find_ratio(const Differences (&differences)[3], ChainRatio &ratio) {
 }
 
 // Of the points that both frames show: the change in green, and those of red and blue relative to it.
-void find_differences(const ClipTracks &clip, const std::vector<std::vector<Light>> &lights, uint32_t i, uint32_t j,
-                      Differences (&differences)[3]) {
+void find_differences(const Seen &first, const Seen &second, Differences (&differences)[3]) {
     for (Differences &of_channel : differences) of_channel.ev.clear(), of_channel.weight.clear();
-    const ClipFrame &first = clip.frames[i], &second = clip.frames[j];
-    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
-        const Light &from = lights[i][size_t(&a - first.observations.data())],
-                    &to = lights[j][size_t(&b - second.observations.data())];
+    for_shared_tracks(first.observations, second.observations, [&](const ClipObservation &a, const ClipObservation &b) {
+        const Light &from = first.lights[size_t(&a - first.observations.data())],
+                    &to = second.lights[size_t(&b - second.observations.data())];
         const double green = to.ev[1] - from.ev[1];
         if (!std::isfinite(green)) return;
         for (size_t c = 0; c < 3; c++) {
@@ -87,16 +91,17 @@ void find_differences(const ClipTracks &clip, const std::vector<std::vector<Ligh
 // biases the next ones alike: ratios over longer distances count more.
 std::vector<ChainRatio> ratios_of(const ClipTracks &clip, const ClipModel &model) {
     std::vector<ChainRatio> ratios;
-    std::vector<std::vector<Light>> lights(clip.frames.size());  // of the frames that later ones are compared with
+    std::vector<Seen> seen(longest_lag + 1);  // the last frames
+    const auto seen_in = [&](uint32_t i) -> Seen & { return seen[i % seen.size()]; };
     Differences differences[3];
     for (uint32_t i = 0; i < clip.frames.size(); i++) {
-        lights[i] = lights_of(clip.frames[i], model, clip.info);
+        seen_in(i).observations = clip.observations_of(i);
+        seen_in(i).lights = lights_of(seen_in(i).observations, model, clip.info);
         for (uint32_t lag = 1; lag <= std::min(longest_lag, i); lag *= 2) {
-            find_differences(clip, lights, i - lag, i, differences);
+            find_differences(seen_in(i - lag), seen_in(i), differences);
             ChainRatio ratio{i - lag, i, {}, 0.0, static_cast<double>(lag) / longest_lag};
             if (find_ratio(differences, ratio)) ratios.push_back(ratio);
         }
-        if (i >= longest_lag) std::vector<Light>().swap(lights[i - longest_lag]);
     }
     return ratios;
 }

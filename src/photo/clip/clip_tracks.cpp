@@ -9,10 +9,9 @@
 namespace lensprof {
 namespace {
 
-constexpr int patch_side = 7;  // px of the reduced frame
+constexpr size_t first_look = 300;  // frames
+constexpr int patch_side = 7;       // px of the reduced frame
 constexpr double white_value = 250.5 / 255.0, largest_spread = 24.0 / 255.0;
-constexpr size_t most_static_frames = 120;
-constexpr double most_static_s = 3.0;
 
 // Sums of a channel over the samples of a patch.
 struct ChannelSums {
@@ -61,7 +60,14 @@ std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place,
 
 }  // namespace
 
-ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events) {
+ClipObservations ClipTracks::observations_of(size_t frame) const {
+    ClipObservations found(frames[frame].observations);
+    observations->read(frames[frame].observations_at, found.data(), found.size() * sizeof(ClipObservation));
+    return found;
+}
+
+ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
+                      const std::function<void(const ClipTracks &)> &look) {
     ClipTracks clip;
     clip.path = path, clip.info = source.info();
     if (!CornerTracker::can_follow(clip.info.width, clip.info.height))
@@ -72,9 +78,12 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
                          "64 pixels and more, of usual proportions",
                          clip.info.width, clip.info.height),
             LENSPROF_REASON_FEW_PAIRS);
+    const StillStart still = find_still_start(source);
+    clip.frames_in_clip = still.frames, clip.shown_frames = still.shown;
+    if (still.frames > 0) return clip;
     CornerTracker tracker;
     bool is_grey = true;
-    double next_s = 0.0, shown_s = -1.0;
+    double next_s = 0.0;
     for (VideoFrame frame; source.next(frame);) {
         clip.frames_in_clip++;
         stop_if_cancelled();
@@ -84,9 +93,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         const auto total = clip.info.frames;
         events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
                       counted(clip.frames_in_clip, "frame"));
-        if (!tracked.is_blank && clip.shown_frames++ == 0) shown_s = frame.seconds;
-        if (clip.shown_frames >= most_static_frames && frame.seconds >= shown_s + most_static_s && clip.is_static())
-            break;
+        clip.shown_frames += !tracked.is_blank;
         if (taken_per_s > 0.0) {
             if (frame.seconds < next_s - 0.5 / std::max(taken_per_s, clip.info.frames_per_s)) continue;
             next_s = (std::floor(frame.seconds * taken_per_s + 0.5) + 1.0) / taken_per_s;
@@ -95,12 +102,17 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         found.number = frame.number, found.seconds = frame.seconds;
         found.mean_level = tracked.mean_level, found.motion = tracked.motion, found.repeats = tracked.repeats;
         if (tracked.is_blank) found.state = ClipState::blank;
+        ClipObservations observations;
         for (const TrackedPlace &place : tracked.places) {
             const auto value = patch_mean(frame.picture, place, patch_side * static_cast<int>(tracked.side));
-            found.observations.push_back({place.track, place.x, place.y, value});
+            observations.push_back({place.track, place.x, place.y, value});
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }
-        clip.frames.push_back(std::move(found));
+        found.observations = static_cast<uint32_t>(observations.size());
+        found.observations_at =
+            clip.observations->append(observations.data(), observations.size() * sizeof(ClipObservation));
+        clip.frames.push_back(found);
+        if (clip.frames.size() == first_look) look(clip);
     }
     events.clear();
     clip.channels = is_grey ? 1 : 3;

@@ -3,10 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "photo/base/events.hpp"
+#include "photo/base/memory_file.hpp"
+#include "photo/clip/camera_motion.hpp"
 #include "photo/clip/frame_source.hpp"
 
 namespace lensprof {
@@ -24,13 +28,16 @@ struct ClipObservation {
     std::array<float, 3> value{};  // mean of a patch, 0..1; 1 = saturated, NaN = saturated in part, or uneven
 };
 
+using ClipObservations = std::vector<ClipObservation>;  // of a frame, sorted by track
+
 struct ClipFrame {
     uint64_t number = 0;  // in the clip, from 0
     double seconds = 0.0;
     double mean_level = 0.0;  // of its samples, 0..255
     double motion = 0.0;      // since the frame before, half diagonals
     bool repeats = false, is_keyframe = false;
-    std::vector<ClipObservation> observations;  // sorted by track
+    uint64_t observations_at = 0;  // in ClipTracks::observations
+    uint32_t observations = 0;     // their number
 
     ClipState state = ClipState::unlinked;
     uint32_t segment = 0;          // number of breaks before it
@@ -47,21 +54,24 @@ struct ClipTracks {
     std::vector<ClipFrame> frames;
     uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: neither black nor white
     double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
-    bool is_static() const { return travel < 0.01; }
+    std::shared_ptr<ScratchFile> observations = std::make_shared<ScratchFile>();  // of all frames
+    bool is_static() const { return travel < still_travel; }
+    ClipObservations observations_of(size_t frame) const;
 };
 
-// Decodes the clip once, and holds one frame at a time and 24 bytes per observation (about 8 kB a frame). Follows scene
-// points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. Ends early (`is_static`)
-// where nothing moves in the first 120 frames, of 3 s or more, that are neither black nor white.
-ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events);
+// Decodes the clip once, and holds one frame at a time; the observations, about 9 kB per frame, wait on disk. Follows
+// scene points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still
+// start is not followed (`is_static`). `look` is called once, after 300 measured frames, and may throw.
+ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
+                      const std::function<void(const ClipTracks &)> &look);
 
 // The observations of the same tracks in two frames: call(a, b).
 template <class Call>
-void for_shared_tracks(const ClipFrame &first, const ClipFrame &second, const Call &call) {
-    auto b = second.observations.begin();
-    for (const ClipObservation &a : first.observations) {
-        while (b != second.observations.end() && b->track < a.track) ++b;
-        if (b == second.observations.end()) return;
+void for_shared_tracks(const ClipObservations &first, const ClipObservations &second, const Call &call) {
+    auto b = second.begin();
+    for (const ClipObservation &a : first) {
+        while (b != second.end() && b->track < a.track) ++b;
+        if (b == second.end()) return;
         if (b->track == a.track) call(a, *b);
     }
 }

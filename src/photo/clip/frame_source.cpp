@@ -34,11 +34,15 @@ public:
         if (has_transforms(folder)) transforms_ = std::make_shared<TransformsFile>(read_transforms(folder));
         files_ = transforms_ ? transforms_->files : find_sweep(folder, events).files;
         if (files_.empty()) throw Failure(LENSPROF_ERROR_READ, folder + ": has no pictures; give a folder with frames");
+        if (transforms_ && transforms_->is_sorted)
+            events.note(transforms_path(folder),
+                        "lists the frames in another order than that of the numbers in their "
+                        "names, in which they are read and written");
         const Picture header = read_header(files_[0]);
         if (transforms_) check_stated_size(*transforms_, header.width, header.height);
         const PictureMetadata metadata = read_metadata(files_[0]);
         info_.width = header.width, info_.height = header.height, info_.sample = header.sample;
-        info_.orientation = metadata.orientation, info_.codec = "pictures";
+        info_.orientation = metadata.orientation, info_.codec = pictures_codec;
         info_.camera_maker = metadata.key.camera_maker, info_.camera_model = metadata.key.camera_model;
         info_.frames_per_s = frames_per_s, info_.frames = files_.size();
     }

@@ -11,6 +11,8 @@
 
 namespace lensprof {
 
+constexpr char pictures_codec[] = "pictures";  // of a folder
+
 class FrameSource {
 public:
     virtual ~FrameSource() = default;

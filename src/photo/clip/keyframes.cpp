@@ -12,21 +12,7 @@ constexpr double exposure_step_ev = 0.3, usual_gamma = 2.2;  // the response is 
 constexpr double every_frame = 2.0;                          // as the share of scene points
 constexpr size_t least_shared = 12, least_keyframes = 50;
 
-// What two frames have in common.
-struct Common {
-    size_t shared = 0;
-    double step_ev = 0.0;  // about, from grey values
-};
-
 bool is_usable(const ClipObservation &seen) { return seen.value[1] > 0.04f && seen.value[1] < 0.98f; }
-
-Common common_of(const ClipFrame &first, const ClipFrame &second) {
-    std::vector<double> steps;
-    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
-        if (is_usable(a) && is_usable(b)) steps.push_back(usual_gamma * std::log2(b.value[1] / a.value[1]));
-    });
-    return {steps.size(), upper_median(steps)};
-}
 
 // Consecutive keyframes that share scene points.
 struct Run {
@@ -36,28 +22,25 @@ struct Run {
 
 std::vector<Run> runs_at(const ClipTracks &clip, double least_share) {
     std::vector<Run> runs;
-    const auto usable = [&](uint32_t i) {
-        return clip.frames[i].state != ClipState::blank && !clip.frames[i].repeats
-               && clip.frames[i].observations.size() >= least_shared;
-    };
-    uint32_t before = UINT32_MAX;  // the last usable frame
+    ClipObservations before, last;  // of the last usable frame, and of the last keyframe
     for (uint32_t i = 0; i < clip.frames.size(); i++) {
-        if (!usable(i)) continue;
         const ClipFrame &frame = clip.frames[i];
-        const bool is_new = runs.empty() || common_of(clip.frames[before], frame).shared < least_shared;
-        before = i;
+        if (frame.state == ClipState::blank || frame.repeats || frame.observations < least_shared) continue;
+        const ClipObservations seen = clip.observations_of(i);
+        const bool is_new = runs.empty() || common_of(before, seen).shared < least_shared;
+        before = seen;
         if (is_new) {
             runs.push_back({{i}, {0.0}});
+            last = seen;
             continue;
         }
-        Run &run = runs.back();
-        const ClipFrame &last = clip.frames[run.frames.back()];
-        const Common common = common_of(last, frame);
-        const auto of_last = std::count_if(last.observations.begin(), last.observations.end(), is_usable);
+        const CommonPoints common = common_of(last, seen);
+        const auto of_last = std::count_if(last.begin(), last.end(), is_usable);
         const double share = double(common.shared) / std::max(double(of_last), 1.0);
         if (share >= least_share && std::abs(common.step_ev) < exposure_step_ev) continue;
-        run.frames.push_back(i);
-        run.change_ev.push_back(std::abs(common.step_ev));
+        runs.back().frames.push_back(i);
+        runs.back().change_ev.push_back(std::abs(common.step_ev));
+        last = seen;
     }
     return runs;
 }
@@ -83,6 +66,14 @@ double worth_of(const Run &run, size_t first, size_t end) {
 }
 
 }  // namespace
+
+CommonPoints common_of(const ClipObservations &first, const ClipObservations &second) {
+    std::vector<double> steps;
+    for_shared_tracks(first, second, [&](const ClipObservation &a, const ClipObservation &b) {
+        if (is_usable(a) && is_usable(b)) steps.push_back(usual_gamma * std::log2(b.value[1] / a.value[1]));
+    });
+    return {steps.size(), upper_median(steps)};
+}
 
 std::vector<uint32_t> choose_keyframes(const ClipTracks &clip, uint32_t most) {
     std::vector<Run> runs;

@@ -1,7 +1,9 @@
 #include "photo/clip/transforms_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
+#include <tuple>
 
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
@@ -39,6 +41,31 @@ void move_name(OrderedJson &object, const char *key, const std::string &from, co
     *found = whole.lexically_proximate(canonical_path(to)).generic_string();
 }
 
+// A name without extension: what comes before the number at its end, and the number.
+std::pair<std::string, std::string> split_number(const std::string &file) {
+    const std::string name = fs::path(file).replace_extension().string();
+    const size_t end = name.find_last_not_of("0123456789") + 1;
+    return {name.substr(0, end), name.substr(std::min(name.find_first_not_of('0', end), name.size()))};
+}
+
+void sort_by_number(TransformsFile &transforms) {
+    using Place = std::tuple<size_t, std::string, size_t>;  // digits, number, frame
+    std::vector<Place> places;
+    for (size_t i = 0; i < transforms.files.size(); i++) {
+        const auto [before, number] = split_number(transforms.files[i]);
+        if (before != split_number(transforms.files[0]).first) return;
+        places.emplace_back(number.size(), number, i);
+    }
+    if (std::is_sorted(places.begin(), places.end())) return;
+    std::sort(places.begin(), places.end());
+    const TransformsFile listed = transforms;
+    for (size_t i = 0; i < places.size(); i++) {
+        transforms.files[i] = listed.files[std::get<2>(places[i])];
+        transforms.content["frames"][i] = listed.content["frames"][std::get<2>(places[i])];
+    }
+    transforms.is_sorted = true;
+}
+
 }  // namespace
 
 std::string transforms_path(const std::string &folder) { return (fs::path(folder) / transforms_name).string(); }
@@ -46,7 +73,7 @@ std::string transforms_path(const std::string &folder) { return (fs::path(folder
 bool has_transforms(const std::string &folder) { return is_regular_file(transforms_path(folder)); }
 
 TransformsFile read_transforms(const std::string &folder) {
-    TransformsFile transforms{folder, {}, {}};
+    TransformsFile transforms{folder, {}, {}, false};
     const auto check_depth = [&](int depth, OrderedJson::parse_event_t, const OrderedJson &) {
         if (depth > deepest) fail_transforms(folder, format("is nested more than %d deep; repair it", deepest));
         return true;
@@ -72,6 +99,7 @@ TransformsFile read_transforms(const std::string &folder) {
         transforms.files.push_back(file);
     }
     if (transforms.files.empty()) fail_transforms(folder, "lists no frames; give a file with frames");
+    sort_by_number(transforms);
     return transforms;
 }
 

@@ -13,7 +13,8 @@ constexpr char transforms_name[] = "transforms.json";
 struct TransformsFile {
     std::string folder;  // its own
     nlohmann::ordered_json content;
-    std::vector<std::string> files;  // of the frames, as listed
+    std::vector<std::string> files;  // of the frames, in the order of `content`
+    bool is_sorted = false;          // the file lists them in another order
 };
 
 // What becomes of a frame.
@@ -27,9 +28,10 @@ std::string transforms_path(const std::string &folder);
 // Whether the folder holds the file.
 bool has_transforms(const std::string &folder);
 
-// Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Failure (unreadable) with
-// the file and the frame, for content that is not such a file, is nested more than 100 deep, or names pictures that do
-// not exist.
+// Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Frames whose names differ
+// in one number at their end are sorted by it: programs list them in any order, but a clip has one. Failure
+// (unreadable) with the file and the frame, for content that is not such a file, is nested more than 100 deep, or names
+// pictures that do not exist.
 TransformsFile read_transforms(const std::string &folder);
 
 // Failure (unreadable) if the file states another size than that of the frames.

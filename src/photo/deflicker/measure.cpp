@@ -12,6 +12,7 @@
 #include "photo/base/parallel.hpp"
 #include "photo/calibration/sequence_fit.hpp"
 #include "photo/calibration/stored_prior.hpp"
+#include "photo/deflicker/frame_motion.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/scene/static_camera.hpp"
 
@@ -19,7 +20,6 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t kReadSide = 480;  // px, of the reduced frames: five pixels to a cell
-constexpr size_t kFirstFrames = 12;  // that show whether the camera moves
 constexpr double kToneError = 0.03;  // of a response that does not fit
 constexpr size_t kTestedSteps = 16;  // from one frame to the next that responses are tested with
 constexpr uint32_t kFramesAhead = 64;
@@ -51,16 +51,6 @@ lensprof_deflicker_result result_of(lensprof_deflicker &deflicker, const std::st
     return result;
 }
 
-[[noreturn]] void fail_moving(const Frame &first, const lensprof_deflicker_result &r) {
-    const std::string how =
-        r.motion > 0.0 && r.unlinked < 0.5
-            ? format("it turns or moves by %.1f %% of the frame from one frame to the next", 100.0 * r.motion)
-            : format("%.0f %% of the frames do not agree with the one before them", 100.0 * r.unlinked);
-    throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                  first.file + ": the camera is not stationary: " + how + advice("moving_camera"),
-                  LENSPROF_REASON_FEW_AGREE);
-}
-
 // Reads the frames in parallel, and adds them in order. Frames that fail get a reason.
 class Reading {
 public:
@@ -78,7 +68,7 @@ public:
                     if (reasons_[i].empty() && take(i, deflicker)) added++;
                     pictures_[i] = Picture();
                     events_.update_items("measuring", i + 1, count);
-                    if (is_checked && added == kFirstFrames && reasons_[i].empty()) check_still(deflicker);
+                    if (is_checked && reasons_[i].empty()) check_motion(added, i + 1 == count, deflicker);
                     next_ = i + 1;
                 });
             });
@@ -123,12 +113,16 @@ private:
         }
     }
 
-    void check_still(lensprof_deflicker &deflicker) const {
+    // After the first frames, and the last.
+    void check_motion(size_t added, bool is_last, lensprof_deflicker &deflicker) {
+        const bool ends_early = is_last && added < warning_frames;
+        if (added != refusal_frames && added != warning_frames && !ends_early) return;
         lensprof_deflicker_result result;
         lensprof_deflicker_result_init(&result);
-        if (lensprof_deflicker_measure(&deflicker, &result, nullptr) == LENSPROF_OK && result.moving
-            && result.levelled >= kFirstFrames / 2)
-            fail_moving(*frames_[0], result);
+        if (lensprof_deflicker_measure(&deflicker, &result, nullptr) != LENSPROF_OK) return;
+        if (added == refusal_frames && result.moving && result.levelled >= refusal_frames / 2)
+            refuse_moving(*frames_[0], result);
+        if ((added == warning_frames || ends_early) && !result.moving) warn_of_motion(deflicker, frames_, events_);
     }
 
     const MeasureOptions &options_;
@@ -284,10 +278,10 @@ uint32_t first_levelled(const std::vector<lensprof_deflicker_frame> &frames) {
 
 bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
     constexpr double kStillShift = 0.002, kStillAgreeing = 0.3;  // share of the longer side; share of the cells
-    if (frames.size() < kFirstFrames) return false;
+    if (frames.size() < refusal_frames) return false;
     std::vector<Frame> spread;
-    for (size_t n = 0; n < kFirstFrames; n++) {
-        const Frame &frame = frames[n * (frames.size() - 1) / (kFirstFrames - 1)];
+    for (size_t n = 0; n < refusal_frames; n++) {
+        const Frame &frame = frames[n * (frames.size() - 1) / (refusal_frames - 1)];
         spread.push_back({frame.file, frame.metadata});
     }
     lensprof_response srgb;
@@ -303,10 +297,10 @@ bool shows_still_camera(const std::vector<Frame> &frames, Events &events) {
         return false;
     lensprof_deflicker_result result;
     lensprof_deflicker_result_init(&result);
-    if (lensprof_deflicker_measure(deflicker.get(), &result, nullptr) != LENSPROF_OK || result.levelled < kFirstFrames
+    if (lensprof_deflicker_measure(deflicker.get(), &result, nullptr) != LENSPROF_OK || result.levelled < refusal_frames
         || result.segments != 1)
         return false;
-    const auto measured = frames_of(*deflicker, kFirstFrames);
+    const auto measured = frames_of(*deflicker, refusal_frames);
     return std::all_of(measured.begin() + 1, measured.end(), [](const lensprof_deflicker_frame &frame) {
         return std::hypot(frame.shift[0], frame.shift[1]) < kStillShift && frame.agreeing > kStillAgreeing;
     });
@@ -361,7 +355,7 @@ MeasuredSequence measure_frames(const MeasureOptions &o, FrameSequence &sequence
     }
     MeasuredSequence measured;
     measure_with(o, candidates[0], true, sequence, measured, events);
-    if (measured.result.moving) fail_moving(sequence.frames[0], measured.result);
+    if (measured.result.moving) refuse_moving(sequence.frames[0], measured.result);
     if (o.response || is_linear(sequence.frames[0]) || measured.result.tone_error <= kToneError) return measured;
     // Ratios of dark and bright tones contradict the response: another one is chosen by the frames that show it best.
     const std::vector<const Frame *> tested = test_frames(sequence, measured.frames);
