@@ -22,6 +22,7 @@ PANS, QUICK = ((120, 640, 360, 12), (100, 320, 180, 6), (500, 320, 180, 6), (100
 WALK = "--images 50 --set moving=room --size 405x720 --format jpeg --seed 1"
 VIEWS = 120
 COLMAP_UP_TO = 120  # pictures; its features of more take too long
+FIT_UP_TO = 500  # pictures; of more, the fit takes hours
 STEPS = ("looking at neighbours", "finding features", "matching pictures", "matching further pictures", "finding cameras")
 
 
@@ -83,10 +84,10 @@ def measure(name, draw, folder):
         drawn.touch()
     count = len(list(pictures.iterdir()))
     used = tools.measured([tools.LENSPROF, "build", pictures, "--no-store", "--verbose", "--json"], folder,
-                          folder / "lensprof")
+                          folder / "lensprof", until="" if count <= FIT_UP_TO else "lensprof: sampling: ")
     text = (folder / "lensprof.err").read_text(errors="replace")
     found = re.search(r"(\d+) pictures overlap \((\d+) links(?: that fit; (\d+) more)?", text)
-    record = {"name": name, "pictures": count, "cpu_s": used["cpu_s"], "peak_mb": used["peak_mb"],
+    record = {"name": name, "pictures": count, "cpu_s": used["cpu_s"] if count <= FIT_UP_TO else None, "peak_mb": used["peak_mb"],
               "steps": seconds_of(text), "joined": int(found.group(1)) if found else 0,
               "links": int(found.group(2)) + int(found.group(3) or 0) if found else 0}
     if colmap.PROGRAM and count <= COLMAP_UP_TO:

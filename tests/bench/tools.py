@@ -29,14 +29,15 @@ LABELS = {"lensprof": "lensprof", "lensprof-paper": "lensprof as the paper", "hu
           "hugin-default": "vig_optimize, defaults"}
 
 
-def measured(command, cwd, log, threads=None, limit_s=LIMIT_S):
-    """Runs a command with its output in log.out and log.err -> {code, wall_s, cpu_s, peak_mb, out}."""
+def measured(command, cwd, log, threads=None, limit_s=LIMIT_S, until=""):
+    """Runs a command with its output in log.out and log.err, up to the text `until` in log.err
+    -> {code, wall_s, cpu_s, peak_mb, out}."""
     environment = dict(os.environ, LC_ALL="C")
     if threads:
         environment["OMP_NUM_THREADS"] = str(threads)
     report = "%s.usage" % log
-    with open("%s.out" % log, "w") as out, open("%s.err" % log, "w") as err:
-        subprocess.run([sys.executable, "-I", "-S", str(HERE / "usage.py"), report, str(limit_s), *map(str, command)],
+    with open("%s.out" % log, "w") as out, open("%s.err" % log, "w+") as err:
+        subprocess.run([sys.executable, "-I", "-S", str(HERE / "usage.py"), report, str(limit_s), until, *map(str, command)],
                        cwd=cwd, env=environment, stdout=out, stderr=err, stdin=subprocess.DEVNULL, check=True)
     with open(report) as file:
         used = json.load(file)
