@@ -219,6 +219,31 @@ void test_a_lost_chain_is_stated(void **) {
     assert_int_equal(r.lost, 1);
 }
 
+// Frames that show something else entirely, small weights and strong noise: the chain goes on afterwards.
+void test_noise_is_found_again(void **) {
+    for (const float weight : {1.0f, 0.001f}) {
+        VideoPlan plan;
+        plan.noise_levels = weight < 1.0f ? 2.0 : 40.0;
+        Video video(plan, gamma_curve(2.2));
+        OnlineRun online(options_for(plan));
+        uint32_t chained = 0;
+        for (uint32_t f = 0; f < 200; f++) {
+            auto seen = video.next();
+            for (auto &o : seen) {
+                o.weight = weight;
+                if (f >= 60 && f < 68) o.value[0] = 0.5f + 0.45f * std::sin(37.0f * static_cast<float>(o.track) + f);
+            }
+            online.frame.number++, online.frame.count = static_cast<uint32_t>(seen.size()),
+                                   online.frame.observations = seen.data();
+            assert_ok(lensprof_online_add(online.online, &online.frame, &online.exposure, nullptr));
+            uint32_t pending = 0;
+            assert_ok(lensprof_online_solve(online.online, 1, &pending, nullptr));
+            chained += f >= 80 && online.exposure.state == LENSPROF_ONLINE_CHAINED;
+        }
+        assert_true(chained >= 110);  // of 120
+    }
+}
+
 // Cameras and clips that differ: errors lie within the stated ones as often as they should. tests/bench/online.cpp has
 // more of them.
 void test_stated_errors_are_true(void **) {
@@ -417,6 +442,7 @@ int main() {
         cmocka_unit_test(test_the_profile_is_the_result),
         cmocka_unit_test(test_a_run_can_start_from_a_profile),
         cmocka_unit_test(test_a_lost_chain_is_stated),
+        cmocka_unit_test(test_noise_is_found_again),
         cmocka_unit_test(test_stated_errors_are_true),
         cmocka_unit_test(test_memory_can_be_copied),
         cmocka_unit_test(test_frames_take_no_heap),

@@ -10,8 +10,9 @@ namespace online {
 namespace {
 
 constexpr double kLeastFalloff = 1e-3, kLeastLight = 1e-9;
-constexpr double kMargin = 3.0;  // standard errors of the noise
-constexpr double kReach = 1.15;  // from the light to those of the difference that gives its second derivative
+constexpr double kMargin = 3.0;      // standard errors of the noise
+constexpr double kMostMargin = 0.1;  // of the range from black to white; noise is measured by what counts
+constexpr double kReach = 1.15;      // from the light to those of the difference that gives its second derivative
 
 double by_log_at(const double *table, double x) {
     double slope;
@@ -68,7 +69,7 @@ OmittedSlope omitted_by_sigma(const State &state, const Prediction &at) {
 }
 
 bool is_inside(const State &state, double value, double noise) {
-    const double margin = kMargin * std::sqrt(noise);
+    const double margin = std::min(kMargin * std::sqrt(noise), kMostMargin * (state.white - state.black));
     return value > state.black + margin && value < state.white - margin;
 }
 

@@ -129,6 +129,7 @@ void Exposing::measure_drift(ChannelFit &fit) const {
         const double mean = 0.5 * (lights_[memory_.seen()[i].slot].information * r.noise / p2 + 1.0);
         sum += share, age += share * mean, age2 += share * mean * mean;
     }
+    if (!(sum > 0.0)) return;
     age /= sum, age2 /= sum;
     const double scatter = kUniformAges * std::max(age2 / (age * age) - 1.0, 0.0);
     fit.drift = fit.own / (age * age) * std::min(scatter, 1.0);
