@@ -299,13 +299,39 @@ void test_interrupted_frames(void **) {
         return WIFEXITED(status) && WEXITSTATUS(status) == done;
     };
     must_exit(done, Words{"deflicker", source, "-o", in_folder("i_whole")} + known);
-    if (interrupted({})) skip();  // it was faster
+    if (interrupted({})) fail_msg("it was faster than an interrupt");
     assert_true(fs::exists(out + "/frame_00001.png") && !fs::exists(out + "/frame_00016.png"));
+    const std::string list = out + "/.lensprof-frames.json", lines = text_of(list), first = out + "/frame_00001.png";
+    const auto pixels = load(first);
+    // A damaged list shows nothing, so that its frames are those of others; a cut line loses its frame alone.
+    for (const std::string &damaged : {std::string("{"), std::string(71 << 20, ' ')}) {
+        save_text(list, damaged);
+        assert_refused(usage, words, {"frame_0000", ": exists"});
+    }
+    save_text(list, lines + "frame_0");
+    // An edited frame is somebody's.
+    save_text(first, "edited");
+    assert_refused(usage, words, {"frame_00001.png: exists"});
+    fs::remove(first);
     save_text(out + "/frame_00015.png", "mine");
     assert_refused(usage, words, {"frame_00015.png: exists"});
     fs::remove(out + "/frame_00015.png");
     const Outcome other = run_words({"deflicker", encoded("still", "j.mkv", "-c:v ffv1 -pix_fmt yuv444p"), "-o", out});
     assert_int_equal(other.code, usage);
+    // A run with --overwrite that is interrupted goes on, too; what the list links to is left alone.
+    const std::string precious = in_folder("precious.txt");
+    save_text(precious, text_of(list));
+    fs::remove(list);
+    fs::create_symlink(precious, list);
+    fs::remove(out + "/frame_00003.png");
+    interrupted({"--overwrite"});
+    assert_true(text_of(precious) == lines + "frame_0" && !fs::is_symlink(list));
+    assert_true(load(first) == pixels);
+    // Another codec replaces the frames that the list has.
+    must_exit(done, words + Words{"--codec", "jpeg"});
+    assert_true(fs::exists(out + "/frame_00016.jpg") && !fs::exists(first));
+    fs::remove_all(out);
+    if (interrupted({})) fail_msg("it was faster than an interrupt");
     const Outcome second = run_words(words);
     assert_int_equal(second.code, done);
     assert_true(contains(second.err, "of an interrupted run kept"));
@@ -314,7 +340,7 @@ void test_interrupted_frames(void **) {
         std::snprintf(name, sizeof name, "/frame_%05u.png", i);
         assert_true(load(out + name) == load(in_folder("i_whole") + name));
     }
-    assert_false(fs::exists(out + "/.lensprof-frames"));
+    assert_false(fs::exists(list));
     assert_refused(usage, words, {"frame_00001.png: exists", "--overwrite"});
 }
 

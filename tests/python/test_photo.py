@@ -225,7 +225,7 @@ class TestCalibration(WithScene):
         output.mkdir()
         deep = "[" * 200000 + "]" * 200000
         (output / ".lensprof-calibrate.json").write_text(
-            '{"schema":4,"files":{},"begun":{},"digest":"","notes":' + deep + "}\n")
+            '{"schema":5,"files":{},"digest":"","notes":' + deep + "}\n")
         self.assertEqual(len(lp.calibrate_folder([self.photos], output, store=False)["pictures"]), len(self.files))
         with self.assertRaises(lp.Error):
             (self.folder / "exposures-deep.json").write_text('{"file":"lensprof exposures","reference":' + deep + "}")

@@ -5,23 +5,20 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/program/numbers.hpp"
 #include "photo/base/format.hpp"
-#include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
-#include "photo/folder/ledger.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr char frame_prefix[] = "frame_";
+constexpr char frame_prefix[] = "frame_", frame_records[] = ".lensprof-frames.json";
 
 void read_codec(const std::string &word, ClipCodec &codec) {
     const size_t colon = std::min(word.find(':'), word.size());
@@ -112,64 +109,51 @@ ClipOutput::ClipOutput(const std::string &source, const std::string &path, const
     suffix_.clear();
 }
 
-// Of the frames that the folder has already.
+// Of the frames that the folder has already: those of an interrupted run of this clip are its own.
 void ClipOutput::check_frames(const std::vector<std::string> &inputs, bool overwrite) {
     std::set<std::string> read;
     for (const std::string &input : inputs) read.insert(file_identity(input));
+    ledger_ = std::make_unique<Ledger>(path_, overwrite, frame_records);
+    const Json notes = {{"source", ascii_path(canonical_path(source_))}};
+    const bool is_of_this_clip = ledger_->notes == notes;
+    ledger_->notes = notes;
     std::error_code error;
     for (std::filesystem::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
+        const std::string file = entry->path().string(), name = entry->path().filename().string();
         const size_t number = frame_number(name);
-        if (number == 0 || name != name_of(number - 1)) continue;
-        older_.insert(entry->path().string());
-        if (read.count(file_identity(entry->path().string())))
-            throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          entry->path().string() + ": is a frame of the input; give the output another name");
+        if (number == 0 || (name != name_of(number - 1) && !ledger_->contains(file))) continue;
+        older_.insert(file);
     }
-    if (!overwrite) read_ledger();
-    const auto is_own = [&](const std::string &file) {
-        return finished_.count(std::filesystem::path(file).filename().string()) > 0;
-    };
-    const auto foreign = std::find_if_not(older_.begin(), older_.end(), is_own);
-    if (foreign != older_.end() && !overwrite)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      *foreign + ": exists; give the folder another name, or replace its frames with --overwrite");
+    for (const std::string &file : older_) {
+        if (read.count(file_identity(file)))
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is a frame of the input; give the output another name");
+        if (!overwrite && (!is_of_this_clip || ledger_->is_foreign(file)))
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          file + ": exists; give the folder another name, or replace its frames with --overwrite");
+    }
 }
 
-// Names of the frames that are begun, and again with their digest when they are finished: an interrupted run leaves it.
-std::string ClipOutput::ledger() const { return (std::filesystem::path(path_) / ".lensprof-frames").string(); }
-
-void ClipOutput::read_ledger() {
-    if (!is_regular_file(ledger())) return;
-    std::istringstream lines(read_text(ledger(), max_text_bytes));
-    std::string source, name, digest;
-    if (!std::getline(lines, source) || source != canonical_path(source_)) return;
-    while (lines >> name >> digest) finished_[name] = digest;
-}
-
-// Writes it, unless it is there, whole, from an interrupted run.
+// Writes it, unless an interrupted run has written the same.
 void ClipOutput::write_picture_of(size_t index, Picture &picture) {
-    const std::string name = name_of(index), file = (std::filesystem::path(path_) / name).string();
-    const std::string digest = digest_of_text(format("%d %u %u ", quality_, picture.width, picture.height)
-                                              + std::string(picture.pixels.begin(), picture.pixels.end()));
+    const std::string file = (std::filesystem::path(path_) / name_of(index)).string();
+    const std::string_view pixels(reinterpret_cast<const char *>(picture.pixels.data()), picture.pixels.size());
+    const std::string key =
+        format("%d %u %u %s", quality_, picture.width, picture.height, digest_of_text(pixels).c_str());
     older_.erase(file);
-    if (const auto found = finished_.find(name);
-        found != finished_.end() && found->second == digest && is_regular_file(file)) {
+    if (ledger_->is_current(file, key) && !ledger_->is_foreign(file)) {
         kept_++;
         return;
     }
     make_folder(path_);
+    if (!is_begun_) ledger_->save();
+    is_begun_ = true;
+    ledger_->begin(file, key);
     picture.traits = PictureTraits();
     WriteOptions options;
     options.jpeg_quality = std::max(quality_, 0);
     const bool is_reduced = suffix_ == ".jpg" && picture.sample == LENSPROF_SAMPLE_U16;
-    if (!lines_.is_open()) {
-        lines_.open(ledger(), finished_.empty() ? std::ios::trunc : std::ios::app);
-        if (finished_.empty()) lines_ << canonical_path(source_) << "\n";
-    }
-    lines_ << name << " -" << std::endl;
     write_picture(file, is_reduced ? with_8_bits(picture) : picture, options);
-    lines_ << name << " " << digest << std::endl;
+    ledger_->finish(file);
 }
 
 std::string ClipOutput::name_of(size_t index) const { return format("%s%05zu", frame_prefix, index + 1) + suffix_; }
@@ -199,8 +183,7 @@ void ClipOutput::finish() {
     for (const std::string &file : older_) std::filesystem::remove(file, ignored);
     older_.clear();
     if (writer_) return;
-    lines_.close();
-    std::filesystem::remove(ledger(), ignored);
+    ledger_->erase();
     if (kept_ > 0) events_.note(path_, counted(kept_, "frame") + " of an interrupted run kept");
 }
 

@@ -1,8 +1,6 @@
 // Where levelled frames of a clip go: pictures in a folder, or a video.
 #pragma once
 
-#include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "cli/program/options.hpp"
+#include "photo/folder/ledger.hpp"
 #include "photo/report/report.hpp"
 #include "photo/video/video_writer.hpp"
 
@@ -31,8 +30,8 @@ class ClipOutput {
 public:
     // Failure before anything is measured: of VideoWriter, and (usage) for an output that would replace the source or
     // one of `inputs`, or, without `overwrite`, a video or frames that exist, unless an interrupted run of the same
-    // clip wrote them: those are kept where they are as they would be written; (failed) for a folder that cannot be
-    // written.
+    // clip wrote them and nobody changed them: those are kept where they are as they would be written; (failed) for a
+    // folder that cannot be written.
     ClipOutput(const std::string &source, const std::string &path, const std::vector<std::string> &inputs,
                const ClipCodec &codec, bool overwrite, Events &events);
 
@@ -53,16 +52,14 @@ public:
 
 private:
     void check_frames(const std::vector<std::string> &inputs, bool overwrite);
-    std::string ledger() const;
-    void read_ledger();
     void write_picture_of(size_t index, Picture &picture);
 
     Events &events_;
     std::string source_, path_, suffix_;
-    std::set<std::string> older_;                  // frames in the folder that this run has not written
-    std::map<std::string, std::string> finished_;  // by an interrupted run of this source: digests of the pixels
-    std::ofstream lines_;                          // of the ledger
-    size_t kept_ = 0;                              // of those
+    std::set<std::string> older_;     // frames in the folder that this run has not written
+    std::unique_ptr<Ledger> ledger_;  // of frames in a folder; an interrupted run leaves it
+    bool is_begun_ = false;
+    size_t kept_ = 0;  // frames of an interrupted run
     int quality_;
     std::unique_ptr<VideoWriter> writer_;
     std::optional<VideoLoss> loss_;

@@ -15,11 +15,10 @@
 #include "photo/base/input_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/folder/attempt.hpp"
-#include "photo/pictures/named_pictures.hpp"
 
 namespace lensprof {
 
-std::string digest_of_text(const std::string &text) {
+std::string digest_of_text(std::string_view text) {
     uint64_t hash = 0xcbf29ce484222325;
     for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 0x100000001b3;
     return format("%016llx", static_cast<unsigned long long>(hash));
@@ -53,7 +52,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 4;
+constexpr int schema = 5;
 
 std::string without_slash(std::string path) {
     while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -102,14 +101,14 @@ void FolderLock::acquire() {
                                               "another folder" + advice("output"));
 }
 
-Ledger::Ledger(const std::string &folder, bool overwrite)
+Ledger::Ledger(const std::string &folder, bool overwrite, const char *records)
     : folder_(without_slash(absolute_path(folder))),
-      path_((fs::path(folder) / calibrate_records).string()),
+      path_((fs::path(folder) / records).string()),
       overwrite_(overwrite) {
     if (!is_regular_file(path_)) return;
     try {
         read(read_text(path_, max_text_bytes));
-    } catch (const Json::exception &) {
+    } catch (const std::exception &) {  // damaged, or too large
         files_.clear();
         notes = Json();
     }
@@ -122,20 +121,19 @@ void Ledger::read(const std::string &text) {
     for (const auto &[file, entry] : json.at("files").items())
         files[file] = {entry.at("of").get<std::string>(), entry.at("stamp").get<std::string>()};
     files_ = std::move(files);
-    recover_files(json.at("begun"), text.substr(std::min(text.find('\n'), text.size())));
+    recover_files(text.substr(std::min(text.find('\n'), text.size())));
     if (json.at("digest") == digest_of_notes(json.at("notes"))) notes = json.at("notes");
     saved_ = text;
 }
 
 // Files started but not finished by a run belong to it if they have the stamp of a line; else they existed before.
-void Ledger::recover_files(const Json &begun, const std::string &lines) {
+void Ledger::recover_files(const std::string &lines) {
     std::istringstream in(lines);
-    std::map<std::string, std::string> stamps;
-    for (std::string file, stamp; in >> file >> stamp;) stamps[file] = stamp;
-    for (const auto &[file, key] : begun.items()) {
-        const auto stamp = stamps.find(file);
-        if (stamp != stamps.end() && stamp->second == stamp_of((fs::path(folder_) / path_of_ascii(file)).string()))
-            files_[file] = {key.get<std::string>(), stamp->second};
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        std::string file, stamp, key;
+        if (words >> file >> stamp >> key && stamp == stamp_of((fs::path(folder_) / path_of_ascii(file)).string()))
+            files_[file] = {path_of_ascii(key), stamp};
     }
 }
 
@@ -177,7 +175,8 @@ void Ledger::note_commit(const std::string &file, const std::string &temporary) 
     const auto begun = begun_.find(name);
     if (begun == begun_.end()) return;
     begun->second.stamp = stamp_of(temporary);
-    std::ofstream(path_, std::ios::app) << name << ' ' << begun->second.stamp << std::endl;
+    std::ofstream(path_, std::ios::app) << name << ' ' << begun->second.stamp << ' ' << ascii_path(begun->second.key)
+                                        << std::endl;
     saved_.clear();
 }
 
@@ -210,20 +209,23 @@ void Ledger::save() {
     std::string text;
     {
         const std::lock_guard<std::mutex> lock(writing_);  // not while the file is written, which is noted, too
-        Json files = Json::object(), begun = Json::object();
+        Json files = Json::object();
         for (const auto &[file, entry] : files_) files[file] = {{"of", entry.key}, {"stamp", entry.stamp}};
-        for (const auto &[file, entry] : begun_) begun[file] = entry.key;
-        const Json json = {{"schema", schema},
-                           {"files", files},
-                           {"begun", begun},
-                           {"digest", digest_of_notes(notes)},
-                           {"notes", notes}};
+        const Json json = {{"schema", schema}, {"files", files}, {"digest", digest_of_notes(notes)}, {"notes", notes}};
         text = json.dump() + "\n";
         if (text == saved_) return;
     }
+    std::error_code ignored;
+    if (fs::is_symlink(path_, ignored)) fs::remove(path_, ignored);  // its target is in another folder
     write_file(path_, text.data(), text.size());
     const std::lock_guard<std::mutex> lock(writing_);
     saved_ = text;
+}
+
+void Ledger::erase() {
+    std::error_code ignored;
+    if (is_regular_file(path_)) fs::remove(path_, ignored);
+    files_.clear(), begun_.clear(), saved_.clear();
 }
 
 }  // namespace lensprof

@@ -6,16 +6,18 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include "photo/base/output_file.hpp"
+#include "photo/pictures/named_pictures.hpp"
 #include "photo/report/report.hpp"
 
 namespace lensprof {
 
 // Sixteen hexadecimal digits (FNV-1a) of a text.
-std::string digest_of_text(const std::string &text);
+std::string digest_of_text(std::string_view text);
 
 // Size and modification time of a file; "" if it does not exist.
 std::string stamp_of(const std::string &file);
@@ -48,14 +50,14 @@ struct ForeignFile : Failure {
 };
 
 // The files of the folder and, as JSON, the state for the next run. Stored in the folder as `.lensprof-calibrate.json`,
-// which is replaced as a whole whenever something changes. Between begin() and finish() a line with the stamp of each
-// new file is appended before the file gets its name. However a run ends, the next one recognises its own files by
-// these lines.
+// which save() replaces as a whole. Between begin() and finish() a line with stamp and key of each new file is appended
+// before the file gets its name. However a run ends, the next one recognises its own files by these lines.
 class Ledger {
 public:
     // Reads the state of an earlier run. A damaged file is treated as missing: then all outputs count as foreign.
     // Modified notes and notes of another version are treated as missing too.
-    explicit Ledger(const std::string &folder, bool overwrite = false);
+    // `records`: another name of it.
+    explicit Ledger(const std::string &folder, bool overwrite = false, const char *records = calibrate_records);
 
     // Whether `file` exists and was written from the inputs that `key` identifies. True even if it was modified since.
     bool is_current(const std::string &file, const std::string &key) const;
@@ -65,8 +67,8 @@ public:
 
     bool contains(const std::string &file) const { return files_.count(name_of(file)) != 0; }
 
-    // Records that `file` is about to be written; call save() before writing it. Throws ForeignFile (usage) unless
-    // `overwrite`. A link is removed because its target is in another folder.
+    // Records that `file` is about to be written, in a folder in which save() was called once. Throws ForeignFile
+    // (usage) unless `overwrite`. A link is removed because its target is in another folder.
     void begin(const std::string &file, const std::string &key);
     void finish(const std::string &file);            // it was written
     void abandon(const std::string &file);           // it was not written and will not be
@@ -78,7 +80,8 @@ public:
     // Registration and panoramas of earlier runs; null if not found.
     Json notes;
 
-    void save();  // if something has changed
+    void save();   // if something has changed
+    void erase();  // nothing is left to recognise
 
 private:
     struct Entry {
@@ -87,7 +90,7 @@ private:
 
     std::string name_of(const std::string &file) const;  // relative to the folder
     void read(const std::string &text);
-    void recover_files(const Json &begun, const std::string &lines);
+    void recover_files(const std::string &lines);
     void note_commit(const std::string &file, const std::string &temporary);
 
     const std::string folder_, path_;
