@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "photo/base/paths.hpp"
 #include "photo/base/utf8.hpp"
 #include "photo/folder/calibrate_folder.hpp"
+#include "photo/pictures/metadata.hpp"
 #include "photo/video/video.hpp"
 
 namespace lensprof {
@@ -142,6 +144,34 @@ bool is_clip(const CalibrateOptions &o) {
     return false;
 }
 
+// Pictures without EXIF, numbered one by one, as programs write the frames of a clip.
+bool has_frames_of_clip(const std::string &folder) {
+    constexpr size_t fewest = 12;
+    std::set<std::string> files;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->is_regular_file(error)) files.insert(entry->path().string());
+    if (files.size() < fewest) return false;
+    std::string prefix, suffix;
+    long last = -1;
+    for (const std::string &file : files) {
+        const size_t end = file.find_last_of("0123456789", file.rfind('.')),
+                     begin = file.find_last_not_of("0123456789", end);
+        if (end == std::string::npos || begin == std::string::npos || end - begin > 9) return false;
+        const long number = std::stol(file.substr(begin + 1, end - begin));
+        if (last < 0) prefix = file.substr(0, begin + 1), suffix = file.substr(end + 1);
+        if (last >= 0 && number != last + 1) return false;
+        if (file.substr(0, begin + 1) != prefix || file.substr(end + 1) != suffix) return false;
+        last = number;
+    }
+    try {
+        const PictureMetadata metadata = read_metadata(*files.begin());
+        return !*metadata.key.camera_model && !metadata.exposure_time_s;
+    } catch (const Failure &) {
+        return false;
+    }
+}
+
 int run(CalibrateOptions &o, Streams &streams) {
     if (is_clip(o)) {
         if (!o.report.empty())
@@ -157,6 +187,9 @@ int run(CalibrateOptions &o, Streams &streams) {
     }
     Progress events(streams, o.progress);
     check_report(o);
+    if (o.inputs.size() == 1 && is_folder(o.inputs[0]) && has_frames_of_clip(o.inputs[0]))
+        note(streams, o.inputs[0] + ": has numbered pictures without EXIF; if they are the frames of a moving camera, "
+                                    "--moving calibrates them faster and more exactly");
     o.describe = page_of_panorama;
     FolderResult result = calibrate_folder(o, events);
     const auto &[inputs, panoramas, pictures, summary, is_stored] = result;

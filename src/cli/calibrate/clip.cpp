@@ -84,8 +84,7 @@ void report_exponent(const ClipFit &fit, const ClipTracks &clip, const Tally &ta
                                                : "give the exposure time of each frame with --times";
     note(streams, clip.path + ": " + reason
                       + format("; the exponent of response, falloff and exposures is that of typical cameras, with a "
-                               "standard error of %.0f %%; to measure it %s, or calibrate the response first with "
-                               "`lensprof bracket`",
+                               "standard error of %.0f %%; to measure it %s",
                                100.0 * result.gamma_sigma, remedy));
 }
 

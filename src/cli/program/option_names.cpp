@@ -80,8 +80,8 @@ std::string advice_for(const std::string &situation) {
         {"linear_pictures", "; correct such pictures with `lensprof apply --key processing=raw`"},
         {"make_profile", " with `lensprof build`"},
         {"moving_camera",
-         "; use `lensprof calibrate FOLDER --moving` for frames of a moving camera, or give a part that "
-         "stands still with --region"},
+         "; use `lensprof calibrate FOLDER --moving` for frames of a moving camera, --rows for lamps that flicker, or "
+         "give a part that stands still with --region"},
         {"moving_frames", "those of `lensprof calibrate FOLDER --moving`, which measures both for a moving camera"},
         {"name_pictures", "; run `lensprof build` on the pictures with --camera and --lens"},
         {"name_project", "; run `lensprof build` on the project with --camera and --lens"},

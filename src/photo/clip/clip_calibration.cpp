@@ -106,6 +106,17 @@ void check_exposures(const ClipFit &fit, const ClipTracks &clip) {
                       LENSPROF_REASON_UNDETERMINED);
 }
 
+// Adds to the noise of a step what all frames share: how far the given times differ from the frames, codec and tracks
+// included; without times the error of the exponent, which scales all exposures.
+void complete_errors(const ClipFit &fit, ClipTracks &clip) {
+    const lensprof_fit_result &result = fit.best.result;
+    const double common_ev = std::isfinite(fit.known.rms_ev) ? fit.known.rms_ev : 0.0,
+                 exponent = result.gamma_from == LENSPROF_GAMMA_PRIOR ? result.gamma_sigma : 0.0;
+    for (ClipFrame &frame : clip.frames)
+        if (frame.state == ClipState::measured)
+            frame.ev_sigma = std::hypot(frame.ev_sigma, common_ev, exponent * frame.exposure.ev);
+}
+
 ClipModel model_of(const Fitted &best) { return {best.response_of(0), best.falloff_of(0)}; }
 
 }  // namespace
@@ -161,6 +172,7 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     fit_of_clip.known = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
     check_exposures(fit_of_clip, clip);
+    complete_errors(fit_of_clip, clip);
     return fit_of_clip;
 }
 

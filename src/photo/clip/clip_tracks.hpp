@@ -44,7 +44,7 @@ struct ClipFrame {
     uint32_t group = 0;            // first segment of those that known exposures connect; without, `segment`
     lensprof_exposure exposure{};  // EV relative to the mean of its group, white balance to that of its segment; NaN
                                    // unless measured
-    double ev_sigma = 0.0;         // of its ratio to the measured frame before it, EV
+    double ev_sigma = 0.0;         // EV
 };
 
 struct ClipTracks {
