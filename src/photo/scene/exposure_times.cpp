@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *times_name = "times.txt", *images_name = "images";
+constexpr double farthest_ev = 64.0;  // from an exposure time of 1; what fits take
 
 [[noreturn]] void fail_in_line(const std::string &path, size_t line, const std::string &what) {
     throw Failure(LENSPROF_ERROR_READ, path + ": line " + std::to_string(line) + ": " + what);
@@ -71,6 +72,9 @@ private:
                      exposure = fields.size() == 3 ? number(fields[2], "exposure time") : NAN;
         if (exposure <= 0.0)
             fail("the exposure time is " + fields[2] + ", but must be above 0; correct it, or omit it if unknown");
+        if (std::abs(std::log2(exposure)) > farthest_ev)
+            fail("the exposure time is " + fields[2]
+                 + ", which no camera has in any unit; correct it, or omit it if unknown");
         return {number_, fields[0], time, std::log2(exposure)};
     }
 
