@@ -386,8 +386,14 @@ void test_transforms(void **) {
     }
     content["test_filenames"] = {"./images/00004", "images/./" + frame_name(7), "images/00009"};
     save_text(listed, content.dump());
+    std::string times;  // names in the order of the list, not of the frames
+    for (uint32_t place = 0; place < moving_frames; place++) {
+        const uint32_t i = place * 7 % moving_frames;
+        times += frame_name(i) + " " + std::to_string(place) + " " + std::to_string(std::exp2(true_ev(i))) + "\n";
+    }
+    save_text(in_folder("data_times.txt"), times);
     const Words words = {"calibrate", data, "-o", in_folder("data_model"), "--no-store", "--frames"};
-    const Outcome outcome = run_words(words + Words{in_folder("trained")});
+    const Outcome outcome = run_words(words + Words{in_folder("trained"), "--times", in_folder("data_times.txt")});
     if (outcome.code != done) fail_msg("%s", outcome.err.c_str());
     assert_true(contains(outcome.err, "trained: left out, because the exposure is not measured: frame_00005.png"));
     assert_true(contains(outcome.err, "transforms.json: lists the frames in another order than that of the numbers"));

@@ -29,6 +29,13 @@ constexpr double farthest_ev = 64.0;  // from an exposure time of 1; what fits t
 // The name without folder and extension, by which lines and pictures are matched.
 std::string base_name(const std::string &file) { return fs::path(file).stem().string(); }
 
+using PictureNumbers = std::map<std::string, size_t>;  // by name
+
+PictureNumbers::iterator find_picture(PictureNumbers &pictures, const std::string &name) {
+    const auto found = pictures.find(name);
+    return found != pictures.end() ? found : pictures.find(base_name(name));
+}
+
 class LineParser {
 public:
     explicit LineParser(const std::string &path) : path_(path) {}
@@ -103,8 +110,7 @@ public:
 
 private:
     void add(const TimesLine &line) {
-        auto found = picture_of_.find(line.name);
-        if (found == picture_of_.end()) found = picture_of_.find(base_name(line.name));
+        const auto found = find_picture(picture_of_, line.name);
         if (found == picture_of_.end()) {
             if (is_whole_)
                 fail_in_line(path_, line.number,
@@ -133,7 +139,7 @@ private:
     const std::string &path_;
     const std::vector<std::string> &files_;
     bool is_whole_;
-    std::map<std::string, size_t> picture_of_;
+    PictureNumbers picture_of_;
     std::vector<double> ev_;
     std::vector<size_t> line_of_;  // per picture, 0: none yet
 };
@@ -167,6 +173,20 @@ ExposureSweep find_sweep(const std::string &folder, Events &events) {
 }
 
 std::vector<TimesLine> read_times_lines(const std::string &path) { return LineParser(path).lines(); }
+
+std::vector<TimesLine> lines_of_files(const std::vector<TimesLine> &lines, const std::vector<std::string> &files) {
+    if (lines.size() != files.size()) return lines;
+    PictureNumbers unnamed;
+    for (size_t i = 0; i < files.size(); i++) unnamed.emplace(base_name(files[i]), i);
+    std::vector<TimesLine> in_order(lines.size());
+    for (const TimesLine &line : lines) {
+        const auto found = find_picture(unnamed, line.name);
+        if (found == unnamed.end()) return lines;
+        in_order[found->second] = line;
+        unnamed.erase(found);
+    }
+    return in_order;
+}
 
 std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
                                         Events &events) {
