@@ -224,6 +224,12 @@ void test_refusals(void **) {
         run_words({"calibrate", in_folder("brief"), "-o", in_folder("nothing"), "--times", in_folder("few.txt")});
     assert_int_equal(few.code, unreadable);
     assert_true(contains(few.err, "few.txt: has 2 lines, but the clip has 12 frames"));
+    for (const std::string exposure : {"1e300", "1e-25", "-3"}) {
+        save_text(in_folder("wild.txt"), "0 0 10\n1 1 " + exposure + "\n");
+        assert_refused(unreadable,
+                       {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("wild.txt")},
+                       {"wild.txt: line 2: the exposure time is " + exposure, "correct it, or omit it if unknown"});
+    }
     std::ofstream swapped(in_folder("swapped.txt"));
     for (uint32_t i = 0; i < frames; i++)
         swapped << i << " " << i << " " << 10.0 * std::exp2(true_ev(frames - 1 - i)) << "\n";

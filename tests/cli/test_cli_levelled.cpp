@@ -4,6 +4,7 @@
 #include "clip_scenes.hpp"
 #include "program_runs.hpp"
 
+#include "photo/clip/transforms_file.hpp"
 #include "photo/video/video.hpp"
 
 using namespace clip_scenes;
@@ -411,8 +412,14 @@ void test_transforms(void **) {
     }
     content["test_filenames"] = {"./images/00004", "images/./" + frame_name(7), "images/00009"};
     save_text(listed, content.dump());
+    std::string times;  // names in the order of the list, not of the frames
+    for (uint32_t place = 0; place < moving_frames; place++) {
+        const uint32_t i = place * 7 % moving_frames;
+        times += frame_name(i) + " " + std::to_string(place) + " " + std::to_string(std::exp2(true_ev(i))) + "\n";
+    }
+    save_text(in_folder("data_times.txt"), times);
     const Words words = {"calibrate", data, "-o", in_folder("data_model"), "--no-store", "--frames"};
-    const Outcome outcome = run_words(words + Words{in_folder("trained")});
+    const Outcome outcome = run_words(words + Words{in_folder("trained"), "--times", in_folder("data_times.txt")});
     if (outcome.code != done) fail_msg("%s", outcome.err.c_str());
     assert_true(contains(outcome.err, "trained: left out, because the exposure is not measured: frame_00005.png"));
     assert_true(contains(outcome.err, "transforms.json: lists the frames in another order than that of the numbers"));
@@ -457,6 +464,35 @@ void test_transforms(void **) {
     broken(content.dump(), {"00009.png: has 320 x 100 pixels"});
 }
 
+// Names that differ in one whole number are sorted by it; others, in the order of time here, stay as listed.
+void test_order_of_names(void **) {
+    const auto order_of = [](const Words &names) {
+        fs::remove_all(folder / "order");
+        Json content = {{"frames", Json::array()}};
+        for (const std::string &name : names) {
+            fs::create_directories((folder / "order" / name).parent_path());
+            save_text(in_folder("order/" + name + ".png"), "not read");
+            content["frames"].push_back({{"file_path", name}});
+        }
+        save_text(in_folder("order/transforms.json"), content.dump());
+        const TransformsFile transforms = read_transforms(in_folder("order"));
+        std::string order;
+        for (size_t i = 0; i < names.size(); i++) {
+            assert_string_equal(
+                transforms.files[i].c_str(),
+                in_folder("order/" + transforms.content["frames"][i]["file_path"].get<std::string>() + ".png").c_str());
+            order += fs::path(transforms.files[i]).stem().string() + " ";
+        }
+        return order + (transforms.is_sorted ? "sorted" : "listed");
+    };
+    assert_string_equal(order_of({"f_10", "f_9", "f_011"}).c_str(), "f_9 f_10 f_011 sorted");
+    assert_string_equal(order_of({"frame.0002", "frame.0001"}).c_str(), "frame.0001 frame.0002 sorted");
+    assert_string_equal(order_of({"t1.0", "t1.02", "t1.1"}).c_str(), "t1.0 t1.02 t1.1 listed");
+    assert_string_equal(order_of({"1.0", "1.02", "1.1"}).c_str(), "1.0 1.02 1.1 listed");
+    assert_string_equal(order_of({"b/2", "a/1"}).c_str(), "2 1 listed");
+    assert_string_equal(order_of({"2_left", "1_left"}).c_str(), "2_left 1_left listed");
+}
+
 int set_up(void **state) {
     if (make_folder(state) != 0) return 1;
     write_frames("still", still_frames, 0.0, false);
@@ -476,6 +512,7 @@ int main() {
         cmocka_unit_test(test_moving_video),      cmocka_unit_test(test_transforms),
         cmocka_unit_test(test_tables_are_kept),   cmocka_unit_test(test_fields_keep_their_order),
         cmocka_unit_test(test_other_containers),  cmocka_unit_test(test_interrupted_frames),
+        cmocka_unit_test(test_order_of_names),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

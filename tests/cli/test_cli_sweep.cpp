@@ -168,6 +168,7 @@ void test_refused_times(void **) {
         {"f100 1 4\nf101 1 1\nf102 3 1\n", {"line 2", "time stamp", "line 1"}},
         {"f100 1 4\n# x\nf101 2 -1\nf102 3 1\n", {"line 3", "-1", "above 0"}},
         {"f100 1 0\nf101 2 1\nf102 3 1\n", {"line 1", "above 0"}},
+        {"f100 1 4\nf101 2 1e-30\nf102 3 1\n", {"line 2", "1e-30", "no camera"}},
         {"f100 1 inf\nf101 2 1\nf102 3 1\n", {"line 1", "inf"}},
         {"f100 1 nan\nf101 2 1\nf102 3 1\n", {"line 1", "nan"}},
         {"f100 1 4ms\nf101 2 1\nf102 3 1\n", {"line 1", "4ms"}},

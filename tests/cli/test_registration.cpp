@@ -170,20 +170,27 @@ void test_pinhole(void **) {
 
 // Every processor finds the same, for any number of rows and with equal ones.
 void test_nearest_features(void **) {
+    const std::vector<NearestKernel> kernels = nearest_kernels();
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+    const bool has_vnni = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vnni");
+    assert_int_equal(kernels.size(), 1 + (__builtin_cpu_supports("avx2") != 0) + has_vnni);
+#endif
     std::mt19937 random(11);
     for (const auto &[count_a, count_b] : {std::pair(1, 1), {3, 2}, {4, 16}, {9, 17}, {17, 33}, {30, 203}}) {
         std::vector<int16_t> a, b;
         for (int i = 0; i < count_a * descriptor_length; i++) a.push_back(static_cast<int16_t>(random() % 2800));
         for (int i = 0; i < count_b * descriptor_length; i++) b.push_back(static_cast<int16_t>(random() % 2800));
         if (count_b > 9) std::copy_n(b.begin() + 8 * descriptor_length, descriptor_length, b.begin());
-        const auto fast = nearest_features(a.data(), count_a, b.data(), count_b);
-        const auto plain = nearest_features_plainly(a.data(), count_a, b.data(), count_b);
-        assert_int_equal(fast.size(), count_a);
-        for (size_t i = 0; i < fast.size(); i++) {
-            assert_int_equal(fast[i].number, plain[i].number);
-            assert_int_equal(fast[i].best, plain[i].best);
-            if (count_b > 1) assert_int_equal(fast[i].next, plain[i].next);
-            assert_true(plain[i].best > 0 && plain[i].number >= 0 && plain[i].number < count_b);
+        const auto plain = kernels.back().find(a.data(), count_a, b.data(), count_b);
+        for (const NearestFeatures &nearest : plain)
+            assert_true(nearest.best > 0 && nearest.number >= 0 && nearest.number < count_b);
+        for (const NearestKernel &kernel : kernels) {
+            const auto found = kernel.find(a.data(), count_a, b.data(), count_b);
+            assert_int_equal(found.size(), count_a);
+            for (size_t i = 0; i < found.size(); i++)
+                if (found[i].number != plain[i].number || found[i].best != plain[i].best
+                    || (count_b > 1 && found[i].next != plain[i].next))
+                    fail_msg("%s: row %zu of %d among %d", kernel.instructions, i, count_a, count_b);
         }
     }
 }

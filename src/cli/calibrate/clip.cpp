@@ -218,7 +218,7 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     if (!times.empty()) inputs.push_back(times);
     check_conflicts(o, inputs);
     const auto levelled = open_levelled(o, inputs, events);
-    const GivenTimes given(times, source->info(), is_of_pictures || o.frames_per_s <= 0.0);
+    const GivenTimes given(times, *source, is_of_pictures || o.frames_per_s <= 0.0);
     ClipTracks clip = track_clip(o.input, *source, is_of_pictures ? 0.0 : o.frames_per_s, events,
                                  [&](const ClipTracks &first) { check_times_early(first, given.of_first(first)); });
     check_clip(clip);

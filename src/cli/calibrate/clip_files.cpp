@@ -11,7 +11,6 @@
 #include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
-#include "photo/clip/frame_source.hpp"
 
 namespace lensprof {
 namespace {
@@ -98,14 +97,20 @@ const char *clip_state_name(ClipState state) {
     return state == ClipState::measured ? "measured" : state == ClipState::blank ? "blank" : "unlinked";
 }
 
-GivenTimes::GivenTimes(const std::string &path, const VideoInfo &info, bool uses_all_frames)
+GivenTimes::GivenTimes(const std::string &path, const FrameSource &source, bool uses_all_frames)
     : path_(path), uses_all_frames_(uses_all_frames) {
     if (path.empty()) return;
     lines_ = read_times_lines(path);
+    const VideoInfo &info = source.info();
+    const bool is_of_pictures = info.codec == pictures_codec;
     // Containers may count frames that are not shown.
-    const double tolerance = info.codec == pictures_codec ? 0.0 : 10.0 + 0.05 * double(info.frames);
+    const double tolerance = is_of_pictures ? 0.0 : 10.0 + 0.05 * double(info.frames);
     if (uses_all_frames && info.frames > 0 && std::abs(double(lines_.size()) - double(info.frames)) > tolerance)
         fail_count(info.frames);
+    if (!is_of_pictures) return;
+    std::vector<std::string> files;
+    for (uint64_t number = 0; number < info.frames; number++) files.push_back(source.name_of(number));
+    lines_ = lines_of_files(lines_, files);
 }
 
 void GivenTimes::fail_count(uint64_t frames) const {

@@ -6,6 +6,7 @@
 
 #include "photo/base/output_file.hpp"
 #include "photo/clip/clip_calibration.hpp"
+#include "photo/clip/frame_source.hpp"
 #include "photo/report/report.hpp"
 #include "photo/scene/exposure_times.hpp"
 
@@ -22,8 +23,8 @@ class GivenTimes {
 public:
     // Reads the file; an empty path has no lines. Failure (unreadable) with the line, and for a number of lines that is
     // not that of the frames. There is a line for each frame of the clip or, of a part of the frames, for each of
-    // those.
-    GivenTimes(const std::string &path, const VideoInfo &info, bool uses_all_frames);
+    // those. Lines that name the pictures of a folder are theirs, others are in the order of the frames.
+    GivenTimes(const std::string &path, const FrameSource &source, bool uses_all_frames);
 
     // EV per frame, NaN where its line states none; empty: none is known.
     std::vector<double> of(const ClipTracks &clip) const;

@@ -30,9 +30,10 @@ public:
     virtual void read(Picture &picture) = 0;
 };
 
-// The video, or the pictures of the folder, `frames_per_s` apart in time: those that its transforms.json lists, in that
-// order, or all in it (or in images/ in it) in alphabetical order. Failure as of VideoReader, read_picture and
-// read_transforms; Failure (unreadable) for a folder without pictures, and pictures of different sizes.
+// The video, or the pictures of the folder, `frames_per_s` apart in time: those that its transforms.json lists, in the
+// order of read_transforms, or all in it (or in images/ in it) in alphabetical order. Failure as of VideoReader,
+// read_picture and read_transforms; Failure (unreadable) for a folder without pictures, and pictures of different
+// sizes.
 std::unique_ptr<FrameSource> open_frames(const std::string &path, double frames_per_s, Events &events);
 
 }  // namespace lensprof

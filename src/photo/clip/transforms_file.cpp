@@ -48,9 +48,16 @@ std::pair<std::string, std::string> split_number(const std::string &file) {
     return {name.substr(0, end), name.substr(std::min(name.find_first_not_of('0', end), name.size()))};
 }
 
+// Whether the number after this text is the fraction of a decimal, "1.02".
+bool is_before_fraction(const std::string &before) {
+    const size_t size = before.size();
+    return size > 1 && before[size - 1] == '.' && before[size - 2] >= '0' && before[size - 2] <= '9';
+}
+
 void sort_by_number(TransformsFile &transforms) {
     using Place = std::tuple<size_t, std::string, size_t>;  // digits, number, frame
     std::vector<Place> places;
+    if (is_before_fraction(split_number(transforms.files[0]).first)) return;
     for (size_t i = 0; i < transforms.files.size(); i++) {
         const auto [before, number] = split_number(transforms.files[i]);
         if (before != split_number(transforms.files[0]).first) return;

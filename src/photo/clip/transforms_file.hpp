@@ -28,8 +28,9 @@ std::string transforms_path(const std::string &folder);
 // Whether the folder holds the file.
 bool has_transforms(const std::string &folder);
 
-// Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Frames whose names differ
-// in one number at their end are sorted by it: programs list them in any order, but a clip has one. Failure
+// Reads the file of a folder. A name without an extension is that of a .png, .jpg or .jpeg. Frames of one
+// folder whose names differ only in a whole number at their end are sorted by it: programs list them in any order, but
+// a clip has one. Other frames, also those with decimals (t1.02), stay as listed. Failure
 // (unreadable) with the file and the frame, for content that is not such a file, is nested more than 100 deep, or names
 // pictures that do not exist.
 TransformsFile read_transforms(const std::string &folder);

@@ -142,9 +142,7 @@ std::vector<NearestFeatures> nearest_by(const int16_t *a, int count_a, const int
 
 #endif
 
-}  // namespace
-
-std::vector<NearestFeatures> nearest_features_plainly(const int16_t *a, int count_a, const int16_t *b, int count_b) {
+std::vector<NearestFeatures> nearest_plainly(const int16_t *a, int count_a, const int16_t *b, int count_b) {
     std::vector<NearestFeatures> nearest(static_cast<size_t>(count_a));
     for (int i = 0; i < count_a; i++)
         for (int j = 0; j < count_b; j++) {
@@ -156,13 +154,21 @@ std::vector<NearestFeatures> nearest_features_plainly(const int16_t *a, int coun
     return nearest;
 }
 
-std::vector<NearestFeatures> nearest_features(const int16_t *a, int count_a, const int16_t *b, int count_b) {
+}  // namespace
+
+std::vector<NearestKernel> nearest_kernels() {
+    std::vector<NearestKernel> kernels;
 #ifdef LENSPROF_NEAREST_VECTORS
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vnni"))
-        return nearest_by<Avx512>(a, count_a, b, count_b);
-    if (__builtin_cpu_supports("avx2")) return nearest_by<Avx2>(a, count_a, b, count_b);
+        kernels.push_back({"avx512vnni", nearest_by<Avx512>});
+    if (__builtin_cpu_supports("avx2")) kernels.push_back({"avx2", nearest_by<Avx2>});
 #endif
-    return nearest_features_plainly(a, count_a, b, count_b);
+    kernels.push_back({"plain", nearest_plainly});
+    return kernels;
+}
+
+std::vector<NearestFeatures> nearest_features(const int16_t *a, int count_a, const int16_t *b, int count_b) {
+    return nearest_kernels().front().find(a, count_a, b, count_b);
 }
 
 }  // namespace lensprof

@@ -18,7 +18,13 @@ struct NearestFeatures {
 // Per row of `a`, which has `count_a` rows of descriptor_length, among those of `b`.
 std::vector<NearestFeatures> nearest_features(const int16_t *a, int count_a, const int16_t *b, int count_b);
 
-// The same, whatever the processor can do; for tests.
-std::vector<NearestFeatures> nearest_features_plainly(const int16_t *a, int count_a, const int16_t *b, int count_b);
+// The same with the instructions of one kind of processor.
+struct NearestKernel {
+    const char *instructions;
+    std::vector<NearestFeatures> (*find)(const int16_t *a, int count_a, const int16_t *b, int count_b);
+};
+
+// Those that this processor has, from the fastest, which nearest_features uses, to the last, plain C++.
+std::vector<NearestKernel> nearest_kernels();
 
 }  // namespace lensprof

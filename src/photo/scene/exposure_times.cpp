@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *times_name = "times.txt", *images_name = "images";
+constexpr double farthest_ev = 64.0;  // from an exposure time of 1; what fits take
 
 [[noreturn]] void fail_in_line(const std::string &path, size_t line, const std::string &what) {
     throw Failure(LENSPROF_ERROR_READ, path + ": line " + std::to_string(line) + ": " + what);
@@ -27,6 +28,13 @@ constexpr const char *times_name = "times.txt", *images_name = "images";
 
 // The name without folder and extension, by which lines and pictures are matched.
 std::string base_name(const std::string &file) { return fs::path(file).stem().string(); }
+
+using PictureNumbers = std::map<std::string, size_t>;  // by name
+
+PictureNumbers::iterator find_picture(PictureNumbers &pictures, const std::string &name) {
+    const auto found = pictures.find(name);
+    return found != pictures.end() ? found : pictures.find(base_name(name));
+}
 
 class LineParser {
 public:
@@ -71,6 +79,9 @@ private:
                      exposure = fields.size() == 3 ? number(fields[2], "exposure time") : NAN;
         if (exposure <= 0.0)
             fail("the exposure time is " + fields[2] + ", but must be above 0; correct it, or omit it if unknown");
+        if (std::abs(std::log2(exposure)) > farthest_ev)
+            fail("the exposure time is " + fields[2]
+                 + ", which no camera has in any unit; correct it, or omit it if unknown");
         return {number_, fields[0], time, std::log2(exposure)};
     }
 
@@ -99,8 +110,7 @@ public:
 
 private:
     void add(const TimesLine &line) {
-        auto found = picture_of_.find(line.name);
-        if (found == picture_of_.end()) found = picture_of_.find(base_name(line.name));
+        const auto found = find_picture(picture_of_, line.name);
         if (found == picture_of_.end()) {
             if (is_whole_)
                 fail_in_line(path_, line.number,
@@ -129,7 +139,7 @@ private:
     const std::string &path_;
     const std::vector<std::string> &files_;
     bool is_whole_;
-    std::map<std::string, size_t> picture_of_;
+    PictureNumbers picture_of_;
     std::vector<double> ev_;
     std::vector<size_t> line_of_;  // per picture, 0: none yet
 };
@@ -163,6 +173,20 @@ ExposureSweep find_sweep(const std::string &folder, Events &events) {
 }
 
 std::vector<TimesLine> read_times_lines(const std::string &path) { return LineParser(path).lines(); }
+
+std::vector<TimesLine> lines_of_files(const std::vector<TimesLine> &lines, const std::vector<std::string> &files) {
+    if (lines.size() != files.size()) return lines;
+    PictureNumbers unnamed;
+    for (size_t i = 0; i < files.size(); i++) unnamed.emplace(base_name(files[i]), i);
+    std::vector<TimesLine> in_order(lines.size());
+    for (const TimesLine &line : lines) {
+        const auto found = find_picture(unnamed, line.name);
+        if (found == unnamed.end()) return lines;
+        in_order[found->second] = line;
+        unnamed.erase(found);
+    }
+    return in_order;
+}
 
 std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,
                                         Events &events) {

@@ -26,8 +26,12 @@ struct TimesLine {
 };
 
 // All lines, of which there is at least one. Failure (unreadable) with the line for time stamps that do not increase,
-// and exposures that are not positive numbers.
+// and exposures that are not positive numbers or that no camera has.
 std::vector<TimesLine> read_times_lines(const std::string &path);
+
+// The lines in the order of `files` if they name each of these once and nothing else, as in read_exposure_times;
+// otherwise the lines as they are.
+std::vector<TimesLine> lines_of_files(const std::vector<TimesLine> &lines, const std::vector<std::string> &files);
 
 // The exposures of `files`, EV, NaN where the file states none. The exposure times may have any unit, because only
 // their ratios count. Names are those of the files, with or without folder and extension. `is_whole`: the files are all
