@@ -3,6 +3,7 @@
 
 #include "clip_scenes.hpp"
 
+#include "photo/clip/camera_motion.hpp"
 #include "photo/video/video.hpp"
 
 using namespace clip_scenes;
@@ -264,7 +265,13 @@ void test_refusals(void **) {
                      option[0] + ": is for clips; give one video"));
 }
 
-// A stationary camera is named after a look at every sixth frame: the others, which are damaged here, are not decoded.
+// Frames that a look at the beginning of a clip decodes: one in six, in uneven steps.
+bool is_looked_at(uint32_t i) {
+    const uint32_t at = i % 30;
+    return at == 0 || at == 5 || at == 12 || at == 16 || at == 24;
+}
+
+// A stationary camera is named after a look at one frame in six: the others, which are damaged here, are not decoded.
 // A clip that moves after a still second is a clip.
 void test_still_start(void **) {
     if (!can_read_video()) skip();
@@ -273,7 +280,7 @@ void test_still_start(void **) {
     const std::string damaged = text_of(in_folder("tripod_seen/images/00001.png")).substr(0, 3000);
     for (uint32_t i = 0; i < 130; i++) {
         const std::string name = in_folder("long_still/" + frame_name(i));
-        if (i % 6 == 0)
+        if (is_looked_at(i))
             fs::copy_file(in_folder("tripod_seen/images/" + frame_name(i / 6 % 12)), name);
         else
             save_text(name, damaged);
@@ -281,12 +288,101 @@ void test_still_start(void **) {
     const Outcome still =
         run_words({"calibrate", in_folder("long_still"), "--moving", "-o", in_folder("nothing"), "--no-store"});
     assert_int_equal(still.code, not_usable);
-    assert_true(contains(still.err, "does not move in the first 121 frames, which"));
+    assert_true(contains(still.err, "does not move in the first 120 frames, which"));
     fs::create_directories(folder / "late_start");
     for (uint32_t i = 0; i < 24 + frames; i++)
         fs::copy_file(in_folder("moving/images/" + frame_name(i < 24 ? 0 : i - 24)),
                       in_folder("late_start/" + frame_name(i)));
     must_exit(done, {"calibrate", in_folder("late_start"), "--moving", "-o", in_folder("late"), "--no-store"});
+}
+
+// A shake whose period is the mean step of the look, or part of it, is motion: all frames are decoded, up to the first
+// damaged one.
+void test_periodic_shake(void **) {
+    if (!can_read_video()) skip();
+    const std::string damaged = text_of(in_folder("moving/images/00001.png")).substr(0, 3000);
+    for (const std::vector<uint32_t> &shake : {std::vector<uint32_t>{0, 1, 2, 3, 2, 1}, {0, 1, 2}, {0, 2}}) {
+        const std::string name = "shake" + std::to_string(shake.size());
+        fs::create_directories(folder / name);
+        for (uint32_t i = 0; i < 130; i++) {
+            const std::string frame = in_folder(name + "/" + frame_name(i));
+            if (i <= 12 || i % 6 == 0 || is_looked_at(i))
+                fs::copy_file(in_folder("moving/images/" + frame_name(shake[i % shake.size()])), frame);
+            else
+                save_text(frame, damaged);
+        }
+        assert_refused(unreadable, {"calibrate", in_folder(name), "--moving", "-o", in_folder("nothing"), "--no-store"},
+                       {"00013.png"});
+    }
+}
+
+Picture plain(uint8_t red, uint8_t green, uint8_t blue) {
+    Picture frame = rendered_black();
+    for (size_t i = 0; i < frame.pixels.size(); i += 3)
+        frame.pixels[i] = red, frame.pixels[i + 1] = green, frame.pixels[i + 2] = blue;
+    return frame;
+}
+
+// Frames of one colour do not show that the camera is stationary: those before the motion do not matter, and a clip of
+// nothing else is named.
+void test_plain_frames(void **) {
+    if (!can_read_video()) skip();
+    constexpr uint32_t plain_frames = 150;
+    fs::create_directories(folder / "lead_in");
+    write_picture(in_folder("grey.png"), plain(128, 128, 128));
+    write_picture(in_folder("blue.png"), plain(20, 40, 200));
+    write_picture(in_folder("black.png"), rendered_black());
+    for (uint32_t i = 0; i < plain_frames + frames; i++)
+        fs::copy_file(i < plain_frames ? in_folder(i < plain_frames / 2 ? "grey.png" : "blue.png")
+                                       : in_folder("moving/images/" + frame_name(i - plain_frames)),
+                      in_folder("lead_in/" + frame_name(i)));
+    const Json json =
+        json_of({"calibrate", in_folder("lead_in"), "--moving", "-o", in_folder("led"), "--no-store", "--json"});
+    assert_int_equal(json["clip"]["measured"].get<int>(), frames);
+    for (const std::string colour : {"black", "grey"}) {
+        fs::create_directories(folder / ("all_" + colour));
+        for (uint32_t i = 0; i < 10; i++)
+            fs::copy_file(in_folder(colour + ".png"), in_folder("all_" + colour + "/" + frame_name(i)));
+        assert_refused(not_usable,
+                       {"calibrate", in_folder("all_" + colour), "--moving", "-o", in_folder("nothing"), "--no-store"},
+                       {"all 10 frames are black, white or of one colour", "give a clip of a camera that moves"});
+    }
+}
+
+// Black frames, counted where they are advanced to and where they are decoded.
+struct BlackFrames : FrameSource {
+    struct Count {
+        uint64_t advanced = 0, decoded = 0;
+    };
+
+    explicit BlackFrames(Count &counts) : count(counts) {}
+    const VideoInfo &info() const override { return facts; }
+    std::string name_of(uint64_t) const override { return {}; }
+    std::vector<std::string> files() const override { return {}; }
+    std::unique_ptr<FrameSource> again() const override { return std::make_unique<BlackFrames>(count); }
+
+    bool next(VideoFrame &frame) override {
+        frame.number = count.advanced, frame.seconds = double(count.advanced) / 25.0;
+        return count.advanced++ < 5000;
+    }
+
+    void read(Picture &picture) override {
+        picture = rendered_black();
+        count.decoded++;
+    }
+
+    Count &count;
+    VideoInfo facts;
+};
+
+// The look at the beginning of a long black clip ends.
+void test_look_is_bounded(void **) {
+    if (!can_read_video()) skip();
+    BlackFrames::Count count;
+    const BlackFrames source(count);
+    assert_int_equal(find_still_start(source).frames, 0);
+    assert_in_range(count.advanced, 200, 250);
+    assert_in_range(count.decoded, 30, 50);
 }
 
 // Wrong times are named before later frames are read, here damaged ones: by the number of lines, and by their changes.
@@ -331,15 +427,12 @@ int set_up(void **state) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folder),
-        cmocka_unit_test(test_video),
-        cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_deflicker),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_what_is_kept),
-        cmocka_unit_test(test_deep_grey_frames),
-        cmocka_unit_test(test_still_start),
-        cmocka_unit_test(test_wrong_times_are_named_early),
+        cmocka_unit_test(test_folder),           cmocka_unit_test(test_video),
+        cmocka_unit_test(test_scenes),           cmocka_unit_test(test_deflicker),
+        cmocka_unit_test(test_refusals),         cmocka_unit_test(test_what_is_kept),
+        cmocka_unit_test(test_deep_grey_frames), cmocka_unit_test(test_still_start),
+        cmocka_unit_test(test_periodic_shake),   cmocka_unit_test(test_plain_frames),
+        cmocka_unit_test(test_look_is_bounded),  cmocka_unit_test(test_wrong_times_are_named_early),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -180,6 +180,29 @@ void test_frames_left_out(void **) {
     assert_false(fs::exists(name_of("odd-out", 4)) || fs::exists(name_of("odd-out", 6)));
 }
 
+// A damaged frame, wherever it is, is left out and named; the verdict on the camera is that of the others.
+void test_damaged_jpeg(void **) {
+    const auto check = [](size_t count, size_t damaged, double shift) {
+        const std::string name = "cut" + std::to_string(count) + "-" + std::to_string(damaged);
+        make_frames(name, count, shift, ".jpg");
+        Bytes cut = load(name_of(name, damaged, ".jpg"));
+        cut.resize(cut.size() / 2);
+        save(name_of(name, damaged, ".jpg"), cut);
+        const Outcome outcome = run_words({"deflicker", work(name), "-o", work(name + "-out")});
+        assert_int_equal(outcome.code, unreadable);
+        assert_true(contains(outcome.err, "f" + std::to_string(damaged) + ".jpg: ")
+                    && contains(outcome.err, "; left out"));
+        assert_int_equal(contains(outcome.err, "the camera moves by 0."), shift > 0.0);
+        for (size_t i = 0; i < count; i++)
+            assert_int_equal(fs::exists(name_of(name + "-out", i, ".jpg")), i != damaged);
+    };
+    check(12, 5, 0.0);
+    check(12, 11, 0.8);
+    check(24, 5, 0.8);
+    check(24, 0, 0.0);
+    check(25, 24, 0.8);
+}
+
 // A camera that walks is named, also where it could be followed; a tripod that is bumped or in the wind is not, nor a
 // slider.
 void test_walking_camera(void **) {
@@ -233,6 +256,7 @@ int main() {
         CLI_TEST(test_sixteen_bits_stay),
         CLI_TEST(test_settings_of_converters),
         CLI_TEST(test_frames_left_out),
+        CLI_TEST(test_damaged_jpeg),
         CLI_TEST(test_walking_camera),
         CLI_TEST(test_refusals),
     };

@@ -51,9 +51,16 @@ struct Tally {
 };
 
 [[noreturn]] void refuse_static(const ClipTracks &clip) {
+    if (clip.shown_frames == 0)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      clip.path + ": all " + counted(clip.frames_in_clip, "frame")
+                          + " are black, white or of one colour, which show nothing to follow; give a clip of a camera "
+                            "that moves in front of objects, neither too dark nor too bright",
+                      LENSPROF_REASON_FEW_PAIRS);
     throw Failure(LENSPROF_ERROR_NOT_USABLE,
                   clip.path + ": the camera does not move in the first " + counted(clip.shown_frames, "frame")
-                      + (clip.shown_frames < clip.frames_in_clip ? " that are neither black nor white" : "") + ", which do not show its falloff; to level the exposure of a stationary camera use `lensprof "
+                      + (clip.shown_frames < clip.frames_in_clip ? " with scene points" : "")
+                      + ", which do not show its falloff; to level the exposure of a stationary camera use `lensprof "
                         "deflicker`, or give the part of the clip in which it moves",
                   LENSPROF_REASON_FEW_PAIRS);
 }

@@ -1,6 +1,7 @@
 #include "photo/clip/camera_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fit/base/quantile.hpp"
@@ -21,23 +22,27 @@ void CameraMotion::add(const Picture &frame, double seconds) {
 }
 
 StillStart find_still_start(const FrameSource &source) {
-    constexpr uint64_t every = 6;  // moving cameras are found within two or three of these
-    constexpr uint64_t most_frames = 120;
-    constexpr double most_s = 3.0, least_kept = 0.3;
+    constexpr std::array<uint64_t, 5> steps{5, 7, 4, 8, 6};  // uneven, so that a shake of any period is seen
+    constexpr uint64_t least_frames = 120, most_empty = 240;
+    constexpr double least_s = 3.0, least_kept = 0.3;
     StillStart start;
     CornerTracker tracker;
-    double first_s = -1.0;
+    uint64_t wanted = 0, last = 0, empty = 0;
+    double last_s = 0.0, shown_s = 0.0;
+    size_t looks = 0;
     const auto frames = source.again();
-    for (VideoFrame frame; frames->next(frame);) {
+    for (VideoFrame frame; empty <= most_empty && frames->next(frame);) {
         stop_if_cancelled();
-        if (frame.number % every != 0) continue;
+        if (frame.number < wanted) continue;
+        wanted += steps[looks++ % steps.size()];
         frames->read(frame.picture);
         const TrackedFrame tracked = tracker.add(frame.picture);
-        if (tracked.is_blank) continue;
         if (tracked.travel >= still_travel || tracked.kept < least_kept) return {};
-        if (first_s < 0.0) first_s = frame.seconds;
-        start.shown += start.shown ? every : 1, start.frames = frame.number + 1;
-        if (start.shown >= most_frames && frame.seconds >= first_s + most_s) return start;
+        const bool is_shown = tracked.found_again > 0;
+        (is_shown ? start.shown : empty) += frame.number - last;
+        if (is_shown) shown_s += frame.seconds - last_s;
+        last = start.frames = frame.number, last_s = frame.seconds;
+        if (start.shown >= least_frames && shown_s >= least_s) return start;
     }
     return {};
 }

@@ -12,11 +12,11 @@ constexpr double still_travel = 0.01;  // half diagonals that scene points move 
 
 // Frames from the beginning in which nothing moves.
 struct StillStart {
-    uint64_t frames = 0, shown = 0;  // shown: neither black nor white
+    uint64_t frames = 0, shown = 0;  // shown: with scene points
 };
 
-// The first 120 frames, of 3 s or more, that are neither black nor white, if nothing moves in them; else none. Every
-// sixth is looked at, up to the first that shows motion.
+// The first 120 frames, of 3 s or more, with scene points, if these do not move; else none. One in six is looked at, up
+// to the first that shows motion, or until 240 frames show no points.
 StillStart find_still_start(const FrameSource &source);
 
 class CameraMotion {

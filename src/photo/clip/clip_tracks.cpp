@@ -93,7 +93,7 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
         const auto total = clip.info.frames;
         events.update("tracking", total ? double(clip.frames_in_clip) / double(total) : 0.0,
                       counted(clip.frames_in_clip, "frame"));
-        clip.shown_frames += !tracked.is_blank;
+        clip.shown_frames += !tracked.places.empty();
         if (taken_per_s > 0.0) {
             if (frame.seconds < next_s - 0.5 / std::max(taken_per_s, clip.info.frames_per_s)) continue;
             next_s = (std::floor(frame.seconds * taken_per_s + 0.5) + 1.0) / taken_per_s;

@@ -52,16 +52,17 @@ struct ClipTracks {
     VideoInfo info;
     uint32_t channels = 3;
     std::vector<ClipFrame> frames;
-    uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: neither black nor white
+    uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: with scene points
     double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
     std::shared_ptr<ScratchFile> observations = std::make_shared<ScratchFile>();  // of all frames
     bool is_static() const { return travel < still_travel; }
     ClipObservations observations_of(size_t frame) const;
 };
 
-// Decodes the clip once, and holds one frame at a time; the observations, about 9 kB per frame, wait on disk. Follows
-// scene points through all frames, and measures them in `taken_per_s` frames per second, 0 = all. A clip with a still
-// start is not followed (`is_static`). `look` is called once, after 300 measured frames, and may throw.
+// Looks at the beginning (find_still_start): a clip with a still start is not followed (`is_static`). Then decodes the
+// clip once, and holds one frame at a time; the observations, about 9 kB per frame, wait on disk. Follows scene points
+// through all frames, and measures them in `taken_per_s` frames per second, 0 = all. `look` is called once, after 300
+// measured frames, and may throw.
 ClipTracks track_clip(const std::string &path, FrameSource &source, double taken_per_s, Events &events,
                       const std::function<void(const ClipTracks &)> &look);
 

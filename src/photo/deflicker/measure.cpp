@@ -59,16 +59,16 @@ public:
 
     void run(lensprof_deflicker &deflicker, bool is_checked) {
         const auto count = static_cast<uint32_t>(frames_.size());
-        size_t added = 0;
         next_ = 0;
         for_each_in_order(
             count, thread_count(options_.threads), [&](uint32_t i) { or_fail([&] { read(i); }); },
             [&](uint32_t i) {
                 or_fail([&] {
-                    if (reasons_[i].empty() && take(i, deflicker)) added++;
+                    const bool is_added = reasons_[i].empty() && take(i, deflicker);
+                    if (is_added) added_.push_back(frames_[i]);
                     pictures_[i] = Picture();
                     events_.update_items("measuring", i + 1, count);
-                    if (is_checked && reasons_[i].empty()) check_motion(added, i + 1 == count, deflicker);
+                    if (is_checked) check_motion(is_added, i + 1 == count, deflicker);
                     next_ = i + 1;
                 });
             });
@@ -114,19 +114,21 @@ private:
     }
 
     // After the first frames, and the last.
-    void check_motion(size_t added, bool is_last, lensprof_deflicker &deflicker) {
+    void check_motion(bool is_added, bool is_last, lensprof_deflicker &deflicker) {
+        const size_t added = added_.size();
         const bool ends_early = is_last && added < warning_frames;
-        if (added != refusal_frames && added != warning_frames && !ends_early) return;
+        if (!ends_early && (!is_added || (added != refusal_frames && added != warning_frames))) return;
         lensprof_deflicker_result result;
         lensprof_deflicker_result_init(&result);
         if (lensprof_deflicker_measure(&deflicker, &result, nullptr) != LENSPROF_OK) return;
         if (added == refusal_frames && result.moving && result.levelled >= refusal_frames / 2)
-            refuse_moving(*frames_[0], result);
-        if ((added == warning_frames || ends_early) && !result.moving) warn_of_motion(deflicker, frames_, events_);
+            refuse_moving(*added_[0], result);
+        if ((added == warning_frames || ends_early) && !result.moving) warn_of_motion(deflicker, added_, events_);
     }
 
     const MeasureOptions &options_;
     const std::vector<const Frame *> &frames_;
+    std::vector<const Frame *> added_;  // those of them without a reason
     Events &events_;
     std::vector<Picture> pictures_;
     std::vector<std::string> reasons_;

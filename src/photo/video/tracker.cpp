@@ -156,6 +156,7 @@ void CornerTracker::State::follow(const cv::Mat &grey, TrackedFrame &found) {
     found.travel = upper_median(travel) / half_diagonal;
     if (found.kept < least_kept || kept.size() < few_corners / 2) kept.clear();
     corners = std::move(kept);
+    found.found_again = corners.size();
 }
 
 void CornerTracker::State::find_new(const cv::Mat &grey) {

@@ -24,6 +24,7 @@ struct TrackedFrame {
     std::vector<TrackedPlace> places;
     double mean_level = 0.0;  // of the frame, 0..255
     double kept = 1.0;        // share of the places of the frame before that are found again
+    size_t found_again = 0;   // their number; 0 after a cut
     double motion = 0.0;      // median movement of places since the frame before, half diagonals
     double travel = 0.0;      // the same since they were first seen
     bool repeats = false;     // the same picture as the frame before
