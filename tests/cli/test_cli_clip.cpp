@@ -37,6 +37,21 @@ double exposure_error(const std::string &out, uint32_t count) {
     return largest;
 }
 
+// The share of the frames of exposures.json whose error, relative to the mean, is within 1.96 standard errors.
+double share_within_errors(const std::string &out, uint32_t step) {
+    const Json json = parsed(text_of(in_folder(out) + "/exposures.json"))["frames"];
+    std::vector<double> errors;
+    double sum = 0.0, within = 0.0;
+    for (size_t i = 0; i < json.size(); i++) {
+        errors.push_back(json[i]["ev"].get<double>() - true_ev(static_cast<uint32_t>(i) * step));
+        sum += errors.back();
+    }
+    const auto count = static_cast<double>(errors.size());
+    for (size_t i = 0; i < errors.size(); i++)
+        within += std::abs(errors[i] - sum / count) < 1.96 * json[i]["ev_sigma"].get<double>();
+    return within / count;
+}
+
 void assert_model(const std::string &out) {
     std::vector<double> response;
     for (const auto &line : numbers_in(in_folder(out) + "/pcalib.txt"))
@@ -91,10 +106,12 @@ void test_video(void **) {
     assert_true(contains(text, "48 frames of 320 x 240 pixels, 48 measured"));
     assert_true(exposure_error("seen", frames) < 0.02);
     assert_model("seen");
+    assert_true(share_within_errors("seen", 1) > 0.9);
     // Every other frame.
     const Outcome unknown = run_words({"calibrate", clip, "-o", in_folder("part"), "--fps", "12.5"});
     assert_int_equal(unknown.code, done);
     assert_int_equal(numbers_in(in_folder("part") + "/times.txt").size(), frames / 2);
+    assert_true(share_within_errors("part", 2) > 0.8);
     assert_true(contains(unknown.err, "the exposure times are unknown; the exponent"));
     assert_true(contains(unknown.err, "states no camera, so that no profile is stored"));
 }
@@ -221,6 +238,9 @@ void test_refusals(void **) {
     assert_false(fs::exists(in_folder("nothing")));
     std::ofstream(in_folder("few.txt")) << "0 0.0 10\n1 0.04 11\n";
     write_frames("brief", 12, 9.0, false);
+    const Outcome photographs = run_words({"calibrate", in_folder("brief/images"), "-o", in_folder("pictures")});
+    assert_true(contains(photographs.err, "has numbered pictures without EXIF"));
+    assert_true(contains(photographs.err, "--moving"));
     const Outcome few =
         run_words({"calibrate", in_folder("brief"), "-o", in_folder("nothing"), "--times", in_folder("few.txt")});
     assert_int_equal(few.code, unreadable);
