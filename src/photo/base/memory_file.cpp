@@ -14,10 +14,12 @@
 namespace lensprof {
 namespace {
 
-std::string temporary_name() {
+std::string place() {
     const char *folder = std::getenv("TMPDIR");
-    return std::string(folder && *folder ? folder : "/tmp") + "/lensprof-XXXXXX";
+    return folder && *folder ? folder : "/tmp";
 }
+
+std::string temporary_name() { return place() + "/lensprof-XXXXXX"; }
 
 [[noreturn]] void fail(const std::string &what) {
     throw Failure(LENSPROF_ERROR_WRITE, what + ": " + system_text(errno) + "; set TMPDIR to a folder with space");
@@ -59,7 +61,7 @@ void MemoryFile::remove() {
 
 ScratchFile::ScratchFile() {
     file_ = open_unnamed(temporary_name());
-    if (file_ < 0) fail(temporary_name());
+    if (file_ < 0) fail(place());
 }
 
 ScratchFile::~ScratchFile() { close(file_); }
@@ -82,13 +84,14 @@ void ScratchFile::read(uint64_t begin, void *data, size_t size) const {
     for (size_t done = 0; done < size;) {
         const ssize_t got = pread(file_, to + done, size - done, static_cast<off_t>(begin + done));
         if (got < 0 && errno == EINTR) continue;
+        if (got == 0) errno = EIO;  // the file is shorter than what was written
         if (got <= 0) fail("intermediate results");
         done += static_cast<size_t>(got);
     }
 }
 
 TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {
-    if (!mkdtemp(path_.data())) fail(path_);
+    if (!mkdtemp(path_.data())) fail(place());
 }
 
 TemporaryFolder::~TemporaryFolder() {
