@@ -1,4 +1,4 @@
-// The program in a separate process, for tests of its memory use.
+// The program in a separate process, for tests of its memory use and of interrupts.
 #pragma once
 
 #include <fcntl.h>
@@ -15,8 +15,14 @@ struct Ended {
     std::string err;
 };
 
+struct Child {
+    pid_t id = -1;
+    int err = -1;
+    std::string said;  // on standard error
+};
+
 // `prepare` changes the new process: another limit, other processors.
-inline Ended run_program(
+inline Child start_program(
     const Words &words, const std::function<void()> &prepare = [] {}) {
     int ends[2];
     assert_int_equal(pipe(ends), 0);
@@ -27,19 +33,26 @@ inline Ended run_program(
         arguments.push_back(nullptr);
         dup2(open("/dev/null", O_WRONLY), 1);
         dup2(ends[1], 2);
+        close(ends[0]);
+        close(ends[1]);
         prepare();
         execv(LENSPROF_PROGRAM, arguments.data());
         _exit(127);
     }
     close(ends[1]);
-    std::string err;
+    return {child, ends[0], ""};
+}
+
+inline Ended run_program(
+    const Words &words, const std::function<void()> &prepare = [] {}) {
+    Child child = start_program(words, prepare);
     char buffer[4096];
-    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) err.append(buffer, size_t(got));
-    close(ends[0]);
+    for (ssize_t got; (got = read(child.err, buffer, sizeof buffer)) > 0;) child.said.append(buffer, size_t(got));
+    close(child.err);
     int status = 0;
     rusage used = {};
-    assert_int_equal(wait4(child, &status, 0, &used), child);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), used.ru_maxrss * 1024, err};
+    assert_int_equal(wait4(child.id, &status, 0, &used), child.id);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), used.ru_maxrss * 1024, child.said};
 }
 
 }  // namespace program_runs

@@ -284,19 +284,11 @@ void test_interrupted_frames(void **) {
     const std::string source = encoded("still", "i.mkv", "-c:v ffv1 -pix_fmt yuv444p"), out = in_folder("i_frames");
     const Words words = Words{"deflicker", source, "-o", out} + known;
     const auto interrupted = [&](const Words &more) {
-        const pid_t child = fork();
-        if (child == 0) {
-            const Words all = Words{LENSPROF_PROGRAM} + words + more;
-            std::vector<char *> arguments;
-            for (const std::string &word : all) arguments.push_back(const_cast<char *>(word.c_str()));
-            arguments.push_back(nullptr);
-            for (const int stream : {1, 2}) dup2(open("/dev/null", O_WRONLY), stream);
-            execv(LENSPROF_PROGRAM, arguments.data());
-            _exit(127);
-        }
+        const program_runs::Child child = program_runs::start_program(words + more);
         int status = 0;
-        while (waitpid(child, &status, WNOHANG) == 0)
-            if (fs::exists(out + "/frame_00003.png")) kill(child, SIGINT);
+        while (waitpid(child.id, &status, WNOHANG) == 0)
+            if (fs::exists(out + "/frame_00003.png")) kill(child.id, SIGINT);
+        close(child.err);
         return WIFEXITED(status) && WEXITSTATUS(status) == done;
     };
     must_exit(done, Words{"deflicker", source, "-o", in_folder("i_whole")} + known);

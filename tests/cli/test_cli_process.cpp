@@ -1,8 +1,7 @@
 // The program and the operating system: another user's files, full disks, Ctrl-C, closed outputs.
-#include "cli_runs.hpp"
-
-#include <fcntl.h>
 #include <poll.h>
+
+#include "program_runs.hpp"
 
 using namespace cli_runs;
 
@@ -129,33 +128,10 @@ void test_full_disk_for_a_new_database(void **) {
 
 // The program itself, as a process.
 
-struct Child {
-    pid_t id = -1;
-    int err = -1;
-    std::string said;  // on standard error
-};
+using program_runs::Child;
 
 Child start(const Words &words) {
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    Child child;
-    child.id = fork();
-    if (child.id == 0) {
-        std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
-        for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
-        arguments.push_back(nullptr);
-        signal(SIGINT, SIG_DFL);
-        const int null = open("/dev/null", O_WRONLY);
-        dup2(null, 1);
-        dup2(ends[1], 2);
-        close(ends[0]);
-        close(ends[1]);
-        execv(LENSPROF_PROGRAM, arguments.data());
-        _exit(127);
-    }
-    close(ends[1]);
-    child.err = ends[0];
-    return child;
+    return program_runs::start_program(words, [] { signal(SIGINT, SIG_DFL); });
 }
 
 // Reads the child's output until `word` appears, or to the end if word is empty. False after a minute.

@@ -60,7 +60,7 @@ std::string exposure_table(const ClipTracks &clip) {
                            frame.exposure.white_balance[2]);
         else
             text += ",,,";
-        text += format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observations, frame.mean_level);
+        text += format(",%d,%d,%u,%.2f\n", frame.is_keyframe, frame.repeats, frame.observation_count, frame.mean_level);
     }
     return text;
 }

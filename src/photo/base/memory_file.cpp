@@ -38,18 +38,11 @@ MemoryFile::MemoryFile(const void *data, size_t size) {
         is_named_ = file_ >= 0;
     }
     if (file_ < 0) fail("bytes of a picture");
-    const auto *from = static_cast<const uint8_t *>(data);
-    for (size_t done = 0; done < size;) {
-        const ssize_t written = write(file_, from + done, size - done);
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) {
-            const int error_number = errno;
-            remove();
-            errno = error_number;
-            fail("bytes of a picture");
-        }
-        done += static_cast<size_t>(written);
-    }
+    if (write_whole(file_, 0, data, size)) return;
+    const int error_number = errno;
+    remove();
+    errno = error_number;
+    fail("bytes of a picture");
 }
 
 MemoryFile::~MemoryFile() { remove(); }
@@ -67,27 +60,14 @@ ScratchFile::ScratchFile() {
 ScratchFile::~ScratchFile() { close(file_); }
 
 uint64_t ScratchFile::append(const void *data, size_t size) {
-    const auto *from = static_cast<const uint8_t *>(data);
     const uint64_t begin = size_;
-    for (size_t done = 0; done < size;) {
-        const ssize_t written = pwrite(file_, from + done, size - done, static_cast<off_t>(begin + done));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) fail("intermediate results");
-        done += static_cast<size_t>(written);
-    }
+    if (!write_whole(file_, begin, data, size)) fail("intermediate results");
     size_ += size;
     return begin;
 }
 
 void ScratchFile::read(uint64_t begin, void *data, size_t size) const {
-    auto *to = static_cast<uint8_t *>(data);
-    for (size_t done = 0; done < size;) {
-        const ssize_t got = pread(file_, to + done, size - done, static_cast<off_t>(begin + done));
-        if (got < 0 && errno == EINTR) continue;
-        if (got == 0) errno = EIO;  // the file is shorter than what was written
-        if (got <= 0) fail("intermediate results");
-        done += static_cast<size_t>(got);
-    }
+    if (!read_whole(file_, begin, data, size)) fail("intermediate results");
 }
 
 TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {

@@ -128,6 +128,29 @@ int open_unnamed(const std::string &neighbour) {
     return file;
 }
 
+bool read_whole(int file, uint64_t place, void *data, size_t size) {
+    for (size_t done = 0; done < size;) {
+        const ssize_t got =
+            pread(file, static_cast<char *>(data) + done, size - done, static_cast<off_t>(place + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got == 0) errno = EIO;  // the file ends
+        if (got <= 0) return false;
+        done += static_cast<size_t>(got);
+    }
+    return true;
+}
+
+bool write_whole(int file, uint64_t place, const void *data, size_t size) {
+    for (size_t done = 0; done < size;) {
+        const ssize_t written =
+            pwrite(file, static_cast<const char *>(data) + done, size - done, static_cast<off_t>(place + done));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        done += static_cast<size_t>(written);
+    }
+    return true;
+}
+
 void check_folder(const std::string &folder, const std::string &item, lensprof_status folder_status,
                   lensprof_status write_status) {
     const std::string existing = existing_part(absolute_path(folder));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <list>
 #include <memory>
@@ -79,6 +80,11 @@ void write_file(const std::string &path, const void *data, size_t bytes);
 // Opens an unnamed file for reading and writing in the folder of `neighbour`; it is deleted when closed. Returns -1 and
 // sets errno if this fails.
 int open_unnamed(const std::string &neighbour);
+
+// Reads or writes all of these bytes, `place` bytes from the beginning of an open file. False, with errno, if this
+// fails.
+bool read_whole(int file, uint64_t place, void *data, size_t size);
+bool write_whole(int file, uint64_t place, const void *data, size_t size);
 
 // Failure about `item` if `folder` is not writable and cannot be created: with `folder_status` if a file has its
 // name, else `write_status`. For checks before long computations.

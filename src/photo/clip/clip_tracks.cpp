@@ -61,8 +61,8 @@ std::array<float, 3> patch_mean(const Picture &frame, const TrackedPlace &place,
 }  // namespace
 
 ClipObservations ClipTracks::observations_of(size_t frame) const {
-    ClipObservations found(frames[frame].observations);
-    observations->read(frames[frame].observations_at, found.data(), found.size() * sizeof(ClipObservation));
+    ClipObservations found(frames[frame].observation_count);
+    stored->read(frames[frame].observations_at, found.data(), found.size() * sizeof(ClipObservation));
     return found;
 }
 
@@ -108,9 +108,8 @@ ClipTracks track_clip(const std::string &path, FrameSource &source, double taken
             observations.push_back({place.track, place.x, place.y, value});
             is_grey &= !(std::abs(value[0] - value[1]) > 0.0f) && !(std::abs(value[2] - value[1]) > 0.0f);
         }
-        found.observations = static_cast<uint32_t>(observations.size());
-        found.observations_at =
-            clip.observations->append(observations.data(), observations.size() * sizeof(ClipObservation));
+        found.observation_count = static_cast<uint32_t>(observations.size());
+        found.observations_at = clip.stored->append(observations.data(), observations.size() * sizeof(ClipObservation));
         clip.frames.push_back(found);
         if (clip.frames.size() == first_look) look(clip);
     }

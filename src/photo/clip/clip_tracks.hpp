@@ -36,15 +36,15 @@ struct ClipFrame {
     double mean_level = 0.0;  // of its samples, 0..255
     double motion = 0.0;      // since the frame before, half diagonals
     bool repeats = false, is_keyframe = false;
-    uint64_t observations_at = 0;  // in ClipTracks::observations
-    uint32_t observations = 0;     // their number
+    uint64_t observations_at = 0;  // in ClipTracks::stored
+    uint32_t observation_count = 0;
 
     ClipState state = ClipState::unlinked;
     uint32_t segment = 0;          // number of breaks before it
     uint32_t group = 0;            // first segment of those that known exposures connect; without, `segment`
     lensprof_exposure exposure{};  // EV relative to the mean of its group, white balance to that of its segment; NaN
                                    // unless measured
-    double ev_sigma = 0.0;         // EV
+    double ev_sigma = 0.0;         // standard error of exposure.ev; until the clip is fitted that of the last step
 };
 
 struct ClipTracks {
@@ -54,7 +54,7 @@ struct ClipTracks {
     std::vector<ClipFrame> frames;
     uint64_t frames_in_clip = 0, shown_frames = 0;  // shown: with scene points
     double travel = 0.0;  // largest median distance of scene points from where they were first seen, half diagonals
-    std::shared_ptr<ScratchFile> observations = std::make_shared<ScratchFile>();  // of all frames
+    std::shared_ptr<ScratchFile> stored = std::make_shared<ScratchFile>();  // the observations of all frames
     bool is_static() const { return travel < still_travel; }
     ClipObservations observations_of(size_t frame) const;
 };

@@ -25,7 +25,7 @@ std::vector<Run> runs_at(const ClipTracks &clip, double least_share) {
     ClipObservations before, last;  // of the last usable frame, and of the last keyframe
     for (uint32_t i = 0; i < clip.frames.size(); i++) {
         const ClipFrame &frame = clip.frames[i];
-        if (frame.state == ClipState::blank || frame.repeats || frame.observations < least_shared) continue;
+        if (frame.state == ClipState::blank || frame.repeats || frame.observation_count < least_shared) continue;
         const ClipObservations seen = clip.observations_of(i);
         const bool is_new = runs.empty() || common_of(before, seen).shared < least_shared;
         before = seen;

@@ -79,14 +79,8 @@ jvirt_barray_ptr CoefficientFile::request(j_common_ptr info, int pool, boolean, 
 void CoefficientFile::store(j_common_ptr info, Array &array) {
     const JDIMENSION count = std::min(array.window_rows, array.rows - array.window_start);
     for (JDIMENSION y = 0; y < count; ++y) {
-        const char *from = reinterpret_cast<const char *>(array.window[y]);
         const uint64_t place = array.place + (array.window_start + uint64_t(y)) * array.row_bytes;
-        for (size_t done = 0; done < array.row_bytes;) {
-            const ssize_t written =
-                pwrite(file_, from + done, array.row_bytes - done, static_cast<off_t>(place + done));
-            if (written <= 0) ERREXIT(info, JERR_FILE_WRITE);
-            done += static_cast<size_t>(written);
-        }
+        if (!write_whole(file_, place, array.window[y], array.row_bytes)) ERREXIT(info, JERR_FILE_WRITE);
     }
     array.stored = std::max(array.stored, array.window_start + count);
 }
@@ -95,14 +89,11 @@ void CoefficientFile::load(j_common_ptr info, Array &array, JDIMENSION start) {
     array.window_start = start;
     const JDIMENSION count = std::min(array.window_rows, array.rows - start);
     for (JDIMENSION y = 0; y < count; ++y) {
-        char *to = reinterpret_cast<char *>(array.window[y]);
         const uint64_t place = array.place + (start + uint64_t(y)) * array.row_bytes;
-        if (start + y >= array.stored) std::memset(to, 0, array.row_bytes);
-        for (size_t done = 0; start + y < array.stored && done < array.row_bytes;) {
-            const ssize_t received = pread(file_, to + done, array.row_bytes - done, static_cast<off_t>(place + done));
-            if (received <= 0) ERREXIT(info, JERR_FILE_READ);
-            done += static_cast<size_t>(received);
-        }
+        if (start + y >= array.stored)
+            std::memset(array.window[y], 0, array.row_bytes);
+        else if (!read_whole(file_, place, array.window[y], array.row_bytes))
+            ERREXIT(info, JERR_FILE_READ);
     }
 }
 
