@@ -30,6 +30,6 @@ aarch64-linux-gnu-gcc -std=c11 -O2 -mcpu=cortex-a53 -ffreestanding -ffp-contract
     -static -Wl,--gc-sections -Wl,--build-id=none -Wl,--no-warn-rwx-segments -T "$tests/a53.ld" -DNS_PER_TICK=16 \
     "-I$source_dir/include" "-I$source_dir/src" "-I$source_dir/examples/firmware" "-I$tests" \
     "$tests"/{a53,count_samples}.c "$work/counts.c" "${core[@]}" -o "$work/a53.elf"
-timeout 120 qemu-system-aarch64 -M virt -cpu cortex-a53 -display none -monitor none -serial none -chardev stdio,id=out \
+timeout 120 qemu-system-aarch64 -M virt -nic none -cpu cortex-a53 -display none -monitor none -serial none -chardev stdio,id=out \
     -icount shift=0 -semihosting-config enable=on,target=native,chardev=out -kernel "$work/a53.elf" > "$work/a53.txt"
 report cortex-a53 "$work/a53.txt"
