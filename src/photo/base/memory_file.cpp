@@ -38,7 +38,7 @@ MemoryFile::MemoryFile(const void *data, size_t size) {
         is_named_ = file_ >= 0;
     }
     if (file_ < 0) fail("bytes of a picture");
-    if (write_whole(file_, 0, data, size)) return;
+    if (write_bytes_at(file_, 0, data, size)) return;
     const int error_number = errno;
     remove();
     errno = error_number;
@@ -61,13 +61,13 @@ ScratchFile::~ScratchFile() { close(file_); }
 
 uint64_t ScratchFile::append(const void *data, size_t size) {
     const uint64_t begin = size_;
-    if (!write_whole(file_, begin, data, size)) fail("intermediate results");
+    if (!write_bytes_at(file_, begin, data, size)) fail("intermediate results");
     size_ += size;
     return begin;
 }
 
 void ScratchFile::read(uint64_t begin, void *data, size_t size) const {
-    if (!read_whole(file_, begin, data, size)) fail("intermediate results");
+    if (!read_bytes_at(file_, begin, data, size)) fail("intermediate results");
 }
 
 TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {

@@ -128,7 +128,7 @@ int open_unnamed(const std::string &neighbour) {
     return file;
 }
 
-bool read_whole(int file, uint64_t place, void *data, size_t size) {
+bool read_bytes_at(int file, uint64_t place, void *data, size_t size) {
     for (size_t done = 0; done < size;) {
         const ssize_t got =
             pread(file, static_cast<char *>(data) + done, size - done, static_cast<off_t>(place + done));
@@ -140,7 +140,7 @@ bool read_whole(int file, uint64_t place, void *data, size_t size) {
     return true;
 }
 
-bool write_whole(int file, uint64_t place, const void *data, size_t size) {
+bool write_bytes_at(int file, uint64_t place, const void *data, size_t size) {
     for (size_t done = 0; done < size;) {
         const ssize_t written =
             pwrite(file, static_cast<const char *>(data) + done, size - done, static_cast<off_t>(place + done));

@@ -83,8 +83,8 @@ int open_unnamed(const std::string &neighbour);
 
 // Reads or writes all of these bytes, `place` bytes from the beginning of an open file. False, with errno, if this
 // fails.
-bool read_whole(int file, uint64_t place, void *data, size_t size);
-bool write_whole(int file, uint64_t place, const void *data, size_t size);
+bool read_bytes_at(int file, uint64_t place, void *data, size_t size);
+bool write_bytes_at(int file, uint64_t place, const void *data, size_t size);
 
 // Failure about `item` if `folder` is not writable and cannot be created: with `folder_status` if a file has its
 // name, else `write_status`. For checks before long computations.

@@ -80,7 +80,7 @@ void CoefficientFile::store(j_common_ptr info, Array &array) {
     const JDIMENSION count = std::min(array.window_rows, array.rows - array.window_start);
     for (JDIMENSION y = 0; y < count; ++y) {
         const uint64_t place = array.place + (array.window_start + uint64_t(y)) * array.row_bytes;
-        if (!write_whole(file_, place, array.window[y], array.row_bytes)) ERREXIT(info, JERR_FILE_WRITE);
+        if (!write_bytes_at(file_, place, array.window[y], array.row_bytes)) ERREXIT(info, JERR_FILE_WRITE);
     }
     array.stored = std::max(array.stored, array.window_start + count);
 }
@@ -92,7 +92,7 @@ void CoefficientFile::load(j_common_ptr info, Array &array, JDIMENSION start) {
         const uint64_t place = array.place + (start + uint64_t(y)) * array.row_bytes;
         if (start + y >= array.stored)
             std::memset(array.window[y], 0, array.row_bytes);
-        else if (!read_whole(file_, place, array.window[y], array.row_bytes))
+        else if (!read_bytes_at(file_, place, array.window[y], array.row_bytes))
             ERREXIT(info, JERR_FILE_READ);
     }
 }
