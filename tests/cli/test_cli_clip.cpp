@@ -1,4 +1,5 @@
 // `lensprof calibrate` of frames of a moving camera: a folder of rendered frames, and videos that ffmpeg makes of them.
+#include <functional>
 #include <sstream>
 
 #include "clip_scenes.hpp"
@@ -75,7 +76,7 @@ void test_folder(void **) {
     save_text(in_folder("levelled/frame_00099.png"), "of a longer clip");
     save_text(in_folder("levelled/notes.txt"), "kept");
     const Json json = json_of({"calibrate", in_folder("moving"), "-o", in_folder("out"), "--frames",
-                               in_folder("levelled"), "--overwrite", "--json"});
+                               in_folder("levelled"), "--overwrite", "--report", in_folder("out/page.html"), "--json"});
     assert_false(fs::exists(in_folder("levelled/frame_00099.png")));
     assert_true(fs::exists(in_folder("levelled/notes.txt")));
     assert_int_equal(json["clip"]["measured"].get<int>(), frames);
@@ -84,6 +85,9 @@ void test_folder(void **) {
     assert_true(json["clip"]["times_rms_ev"].get<double>() < 0.02);
     assert_true(exposure_error("out", frames) < 0.02);
     assert_model("out");
+    const std::string page = text_of(in_folder("out/page.html"));
+    assert_true(contains(page, "Calibration from the frames of a clip"));
+    assert_true(contains(page, "\"frame 48\"") && contains(page, "\"falloffs\":[{"));
     // The same wall at different exposures looks the same in levelled frames.
     const Picture first = read_picture(in_folder("levelled") + "/frame_00010.png"),
                   later = read_picture(in_folder("levelled") + "/frame_00014.png");
@@ -116,6 +120,32 @@ void test_video(void **) {
     assert_true(contains(unknown.err, "states no camera, so that no profile is stored"));
 }
 
+// A given response determines the exponent without exposure times. One of another shape is refused.
+void test_known_response(void **) {
+    if (!can_read_video()) skip();
+    const auto words_with = [](const std::string &response, const std::string &out) {
+        return Words{
+            "calibrate", in_folder("moving/images"), "--moving", "-o", in_folder(out), "--no-store", "--response",
+            response};
+    };
+    const Outcome named = run_words(words_with("gamma:2.2", "named"));
+    assert_int_equal(named.code, done);
+    assert_false(contains(named.err, "exponent"));
+    assert_true(exposure_error("named", frames) < 0.02);
+    assert_model("named");
+    must_exit(done, words_with(in_folder("named/pcalib.txt"), "of_file"));
+    assert_true(exposure_error("of_file", frames) < 0.02);
+    assert_refused(not_usable, words_with("film", "nothing"),
+                   {"the given response leaves a residual of", "give the response of this camera at these settings"});
+    save_text(in_folder("short.txt"), "0 1 2\n");
+    assert_refused(unreadable, words_with(in_folder("short.txt"), "nothing"), {"short.txt"});
+    assert_refused(unreadable, words_with(in_folder("moving/images/00000.png"), "nothing"), {"00000.png"});
+    assert_refused(usage, words_with(in_folder("missing.txt"), "nothing"), {"--response", "or an existing file"});
+    assert_refused(usage, {"calibrate", in_folder("moving/images"), "-o", in_folder("nothing"), "--response", "srgb"},
+                   {"--response: is for clips", "add --moving"});
+    assert_false(fs::exists(in_folder("nothing")));
+}
+
 // Times connect the scenes before and after a cut; without them each has its own mean.
 void test_scenes(void **) {
     if (!can_read_video()) skip();
@@ -143,6 +173,13 @@ void test_scenes(void **) {
     assert_true(std::abs(step_of(apart) - (ev[30] - ev[10])) > 0.1);
 }
 
+Picture plain(uint8_t red, uint8_t green, uint8_t blue) {
+    Picture frame = rendered_black();
+    for (size_t i = 0; i < frame.pixels.size(); i += 3)
+        frame.pixels[i] = red, frame.pixels[i + 1] = green, frame.pixels[i + 2] = blue;
+    return frame;
+}
+
 // A stationary camera: levelled frames have one brightness.
 void test_deflicker(void **) {
     if (!can_read_video()) skip();
@@ -163,6 +200,22 @@ void test_deflicker(void **) {
         run_words({"deflicker", encoded("moving", "m.mkv", "-c:v ffv1 -pix_fmt yuv444p"), "-o", in_folder("uneven")});
     assert_int_equal(moving.code, not_usable);
     assert_true(contains(moving.err, "`lensprof calibrate`"));
+}
+
+// Plain frames before the motion do not show a stationary camera.
+void test_moves_after_a_title(void **) {
+    if (!can_read_video()) skip();
+    constexpr uint32_t title_frames = 95;  // more than the first three seconds
+    fs::create_directories(folder / "titled/images");
+    write_picture(in_folder("title.png"), plain(90, 90, 90));
+    write_frames("slow", 24, 5.0, false);
+    for (uint32_t i = 0; i < title_frames + 24; i++)
+        fs::copy_file(
+            i < title_frames ? in_folder("title.png") : in_folder("slow/images/" + frame_name(i - title_frames)),
+            in_folder("titled/images/" + frame_name(i)));
+    const std::string clip = encoded("titled", "titled.mkv", "-c:v ffv1 -pix_fmt yuv444p");
+    assert_refused(not_usable, {"deflicker", clip, "-o", in_folder("uneven")},
+                   {"the camera moves by", "`lensprof calibrate`"});
 }
 
 // Nothing that is read is replaced, and nothing else without permission, unless an earlier run wrote it.
@@ -228,6 +281,26 @@ void test_deep_grey_frames(void **) {
     must_exit(done, words);
 }
 
+// Exposure times of the frames of "moving".
+void write_times(const std::string &name, const std::function<double(uint32_t)> &ev) {
+    std::ofstream times(in_folder(name));
+    for (uint32_t i = 0; i < frames; i++) times << i << " " << i << " " << 10.0 * std::exp2(ev(i)) << "\n";
+}
+
+// One wrong exposure time is named, and not used.
+void test_a_wrong_line(void **) {
+    if (!can_read_video()) skip();
+    for (const double error_ev : {-3.0, 0.5}) {
+        write_times("slip.txt", [&](uint32_t i) { return true_ev(i) + (i == 16 ? error_ev : 0.0); });
+        const Outcome outcome = run_words({"calibrate", in_folder("moving"), "-o", in_folder("slip"), "--no-store",
+                                           "--overwrite", "--times", in_folder("slip.txt")});
+        assert_int_equal(outcome.code, done);
+        assert_true(contains(outcome.err, "are not used: frame 17\n"));
+        assert_true(exposure_error("slip", frames) < 0.02);
+        assert_model("slip");
+    }
+}
+
 void test_refusals(void **) {
     if (!can_read_video()) skip();
     write_frames("still", 12, 0.0, false);
@@ -236,6 +309,15 @@ void test_refusals(void **) {
     assert_true(contains(still.err, "does not move in the first 12 frames"));
     assert_true(contains(still.err, "`lensprof deflicker`"));
     assert_false(fs::exists(in_folder("nothing")));
+    std::ofstream sweep(in_folder("still/times.txt"));
+    for (uint32_t i = 0; i < 12; i++) sweep << i << " " << i << " " << std::exp2(0.5 * i) << "\n";
+    sweep.close();
+    assert_refused(not_usable, {"calibrate", in_folder("still"), "-o", in_folder("nothing")},
+                   {"differ by 5.5 EV: of a sweep of exposures `lensprof bracket` measures the response"});
+    assert_refused(usage,
+                   {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--report",
+                    in_folder("moving/times.html"), "--times", in_folder("moving/times.html")},
+                   {"times.html"});
     std::ofstream(in_folder("few.txt")) << "0 0.0 10\n1 0.04 11\n";
     write_frames("brief", 12, 9.0, false);
     const Outcome photographs = run_words({"calibrate", in_folder("brief/images"), "-o", in_folder("pictures")});
@@ -251,22 +333,18 @@ void test_refusals(void **) {
                        {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("wild.txt")},
                        {"wild.txt: line 2: the exposure time is " + exposure, "correct it, or omit it if unknown"});
     }
-    std::ofstream swapped(in_folder("swapped.txt"));
-    for (uint32_t i = 0; i < frames; i++)
-        swapped << i << " " << i << " " << 10.0 * std::exp2(true_ev(frames - 1 - i)) << "\n";
-    swapped.close();
+    write_times("swapped.txt", [](uint32_t i) { return true_ev(frames - 1 - i); });
     const Outcome wrong =
         run_words({"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("swapped.txt")});
     assert_int_equal(wrong.code, not_usable);
     assert_true(contains(wrong.err, "the given exposure times differ from what the frames show by"));
     assert_false(fs::exists(in_folder("nothing")));
-    std::ofstream late(in_folder("late.txt"));
-    for (uint32_t i = 0; i < frames; i++)
-        late << i << " " << i << " " << 10.0 * std::exp2(true_ev(i ? i - 1 : 0)) << "\n";
-    late.close();
-    assert_true(contains(
-        run_words({"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("late.txt")}).err,
-        "fit the frames better if they are moved up by 1 line"));
+    for (const uint32_t lines : {1u, 5u}) {
+        write_times("late.txt", [&](uint32_t i) { return true_ev(i < lines ? 0 : i - lines); });
+        assert_refused(not_usable,
+                       {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("late.txt")},
+                       {"fit the frames better if they are moved up by " + std::to_string(lines) + " line"});
+    }
     assert_true(
         contains(run_words({"calibrate", in_folder("moving"), in_folder("brief"), "-o", in_folder("nothing")}).err,
                  "moving: is a clip, which is calibrated alone"));
@@ -334,13 +412,6 @@ void test_periodic_shake(void **) {
         assert_refused(unreadable, {"calibrate", in_folder(name), "--moving", "-o", in_folder("nothing"), "--no-store"},
                        {"00013.png"});
     }
-}
-
-Picture plain(uint8_t red, uint8_t green, uint8_t blue) {
-    Picture frame = rendered_black();
-    for (size_t i = 0; i < frame.pixels.size(); i += 3)
-        frame.pixels[i] = red, frame.pixels[i + 1] = green, frame.pixels[i + 2] = blue;
-    return frame;
 }
 
 // Frames of one colour do not show that the camera is stationary: those before the motion do not matter, and a clip of
@@ -453,6 +524,8 @@ int main() {
         cmocka_unit_test(test_deep_grey_frames), cmocka_unit_test(test_still_start),
         cmocka_unit_test(test_periodic_shake),   cmocka_unit_test(test_plain_frames),
         cmocka_unit_test(test_look_is_bounded),  cmocka_unit_test(test_wrong_times_are_named_early),
+        cmocka_unit_test(test_known_response),   cmocka_unit_test(test_moves_after_a_title),
+        cmocka_unit_test(test_a_wrong_line),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -16,6 +16,7 @@
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
+#include "cli/program/response_words.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/base/utf8.hpp"
@@ -30,6 +31,7 @@ struct CalibrateOptions : FolderOptions {
     std::string report;
     std::string times, frames, to;  // of a clip, as the next three
     ClipCodec codec;
+    std::optional<lensprof_response> response;
     double frames_per_s = 0.0;
     bool is_moving = false;
     bool json = false, progress = false;
@@ -71,6 +73,10 @@ void declare(Command &command, CalibrateOptions &o) {
     command.number("--fps", o.frames_per_s, {0.01, 1000.0},
                    "frames per second that are used of a video; default all. Of a folder their rate; default 25");
     command.file("--times", o.times, "exposure times of the frames: a file of lines with name, time stamp, exposure");
+    command.expert().word(
+        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of_word(word); },
+        "response of the frames of a video, if it is known: srgb, linear, gamma:G, film, emor:a,b,... or a file "
+        "(pcalib.txt); default: fitted");
     command.folder(
         "--frames", o.frames,
         "write levelled frames of a video without falloff into this folder, or as a video: a name with .mp4, "
@@ -130,6 +136,7 @@ bool is_clip(const CalibrateOptions &o) {
     for (const auto &[is_given, name] : {std::pair{o.is_moving, "--moving"},
                                          {o.frames_per_s > 0.0, "--fps"},
                                          {!o.times.empty(), "--times"},
+                                         {o.response.has_value(), "--response"},
                                          {!o.frames.empty(), "--frames"},
                                          {!o.to.empty(), "--to"},
                                          {!o.codec.name.empty(), "--codec"}})
@@ -173,20 +180,17 @@ bool has_frames_of_clip(const std::string &folder) {
 }
 
 int run(CalibrateOptions &o, Streams &streams) {
-    if (is_clip(o)) {
-        if (!o.report.empty())
-            throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          "--report: there is no page of a clip; omit the option, and see "
-                          "exposures.svg in the output folder");
+    const bool is_of_clip = is_clip(o);
+    check_report(o);
+    if (is_of_clip) {
         if (o.one_lens)
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "--one-lens: is for pictures, and a clip has one lens; omit the option");
-        return calibrate_clip({o.inputs[0], o.output, o.times, o.frames, o.to, o.codec, o.frames_per_s, o.store,
-                               o.overwrite, o.json, o.progress},
+        return calibrate_clip({o.inputs[0], o.output, o.times, o.response, o.frames, o.report, o.to, o.codec,
+                               o.frames_per_s, o.store, o.overwrite, o.json, o.progress},
                               streams);
     }
     Progress events(streams, o.progress);
-    check_report(o);
     if (o.inputs.size() == 1 && is_folder(o.inputs[0]) && has_frames_of_clip(o.inputs[0]))
         note(streams, o.inputs[0] + ": has numbered pictures without EXIF; if they are the frames of a moving camera, "
                                     "--moving calibrates them faster and more exactly");

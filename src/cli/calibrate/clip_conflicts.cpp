@@ -29,6 +29,11 @@ void check_conflicts(const ClipCommand &o, const std::vector<std::string> &input
     std::vector<std::string> reserved = inputs;
     if (!o.store.no_store) reserved.push_back(store_path(o.store.db));
     for (const std::string &file : files) check_not_reserved(file, "output folder", reserved);
+    if (!o.report.empty()) {
+        check_not_reserved(o.report, "report", inputs);
+        check_not_reserved(o.report, "report", files);
+        check_not_reserved(o.report, "report", {o.levelled});
+    }
     if (!o.levelled.empty()) {
         if (is_same_file(o.input, o.levelled))
             throw Failure(LENSPROF_ERROR_ARGUMENT, o.levelled + ": is the input; give the output another name");

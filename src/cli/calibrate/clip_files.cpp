@@ -153,6 +153,13 @@ std::vector<double> GivenTimes::of_first(const ClipTracks &clip) const {
     return known_ev;
 }
 
+double GivenTimes::range_ev() const {
+    double low = INFINITY, high = -INFINITY;
+    for (const TimesLine &line : lines_)
+        if (std::isfinite(line.ev)) low = std::min(low, line.ev), high = std::max(high, line.ev);
+    return std::max(0.0, high - low);
+}
+
 std::vector<std::string> write_model(const ClipFit &fit, const ClipTracks &clip, const std::string &folder,
                                      OutputFiles &outputs) {
     const auto profile = fit.profile();

@@ -32,6 +32,9 @@ public:
     // The same while frames are still being read; empty for a part of the frames.
     std::vector<double> of_first(const ClipTracks &clip) const;
 
+    // By how much the known exposures differ, EV; 0: none is known.
+    double range_ev() const;
+
 private:
     void check_time_stamps(const ClipTracks &clip) const;
     [[noreturn]] void fail_count(uint64_t frames) const;

@@ -101,7 +101,7 @@ void declare(Command &command, DeflickerOptions &o) {
             if (word != "auto") o.measure.response = response_of_word(word);
         },
         "response of the frames: auto (default: a stored one, sRGB, or one fitted to the frames, by how ratios of dark "
-        "and bright tones agree), srgb, linear, gamma:G, film or emor:a,b,...");
+        "and bright tones agree), srgb, linear, gamma:G, film, emor:a,b,... or a file (pcalib.txt)");
     declare_databases(command, o.measure.dbs, "");
     command.flag("--rows", o.measure.rows, "level lines, too: lamps flicker within a frame at short exposures");
     declare_writing(command, o.kind);

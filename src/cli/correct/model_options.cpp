@@ -27,8 +27,8 @@ void declare_model_keys(Keys &keys, ModelOptions &o) {
             o.response.reset();
             if (word != "auto") o.response = response_of_word(word);
         },
-        "response of the pictures: auto (default: that of the profile), srgb, gamma:G, linear, film, or emor:a,b,... "
-        "(EMoR coefficients)");
+        "response of the pictures: auto (default: that of the profile), srgb, gamma:G, linear, film, emor:a,b,... "
+        "(EMoR coefficients) or a file (pcalib.txt)");
     keys.flag("force-falloff", o.force_falloff,
               "correct the falloff even if the metadata state that it was corrected before, by lensprof (mark in the "
               "XMP), the camera (maker notes; phones) or a raw converter");

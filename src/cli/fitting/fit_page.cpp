@@ -109,18 +109,24 @@ void add_views(const FitPageInput &input, Events &events, Json &page) {
 
 }  // namespace
 
-Json fit_page_data(const FitPageInput &input, Events &events) {
-    const BuildReport &report = input.report;
-    const std::string title = std::filesystem::path(input.scene.path).filename().string();
-    Json page = new_page("fit", title.empty() ? input.scene.path : title, input.subtitle, input.command);
+Json curves_page(const BuildReport &report, const std::string &path, const std::string &subtitle,
+                 const std::string &command) {
+    const std::string title = std::filesystem::path(path).filename().string();
+    Json page = new_page("fit", title.empty() ? path : title, subtitle, command);
     page["falloffs"] = falloffs_json(report);
-    const std::vector<PairEnds> ends = ends_of_pairs(input.input, input.best, input.scene);
-    page["falloff_points"] = report.has_falloff ? falloff_points(ends, input.best) : Json::array();
+    page["falloff_points"] = page["left_out"] = Json::array();
     page["responses"] = responses_json(report);
     page["typical"] = typical_band(report.camera_kind.kind);
+    return page;
+}
+
+Json fit_page_data(const FitPageInput &input, Events &events) {
+    const BuildReport &report = input.report;
+    Json page = curves_page(report, input.scene.path, input.subtitle, input.command);
+    const std::vector<PairEnds> ends = ends_of_pairs(input.input, input.best, input.scene);
+    if (report.has_falloff) page["falloff_points"] = falloff_points(ends, input.best);
     page["images"] = images_json(input);
     page["residuals"] = residual_figures(ends, input.best, input.scene);
-    page["left_out"] = Json::array();
     for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
     for (size_t i = 0; i < report.names.size(); i++)
         if (std::isnan(report.exposures[i].ev))

@@ -22,6 +22,10 @@ struct FitPageInput {
     bool shows_pictures = true;
 };
 
+// The page of a fit with its curves alone: falloff, response, and those of typical cameras.
+nlohmann::ordered_json curves_page(const BuildReport &report, const std::string &path, const std::string &subtitle,
+                                   const std::string &command);
+
 // Everything in the page but the verdict and what depends on the stored profile; pictures before and after are in it if
 // the result corrects them. Deterministic.
 nlohmann::ordered_json fit_page_data(const FitPageInput &input, Events &events);

@@ -4,7 +4,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include <lensprof/formats.h>
+
 #include "cli/program/numbers.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 
@@ -13,6 +18,28 @@ static double film(double x) {
     const double p = 0.95, s = std::pow(0.28, p), at_one = 1.0 / (1.0 + s),
                  y = std::pow(x, p) / (std::pow(x, p) + s) / at_one;
     return y - 0.04 * std::sin(6.283185307179586 * y);
+}
+
+static lensprof_status take_response(void *response, const lensprof_import_entry *entry) {
+    if (entry->holds != LENSPROF_HOLDS_RESPONSE || entry->profile->responses > 1) return LENSPROF_ERROR_UNSUPPORTED;
+    *static_cast<lensprof_response *>(response) = entry->profile->response[0];
+    return LENSPROF_OK;
+}
+
+static lensprof_response response_of_file(const std::string &file) {
+    const std::string bytes = read_text(file, max_text_bytes);
+    lensprof_import_options options;
+    lensprof_import_options_init(&options);
+    options.name = file.c_str();
+    lensprof_response response;
+    lensprof_error error{};
+    const lensprof_status status =
+        lensprof_import(bytes.data(), bytes.size(), &options, take_response, &response, &error);
+    if (status == LENSPROF_ERROR_UNSUPPORTED)
+        throw Failure(LENSPROF_ERROR_READ,
+                      file + ": is not a file of one response; give a pcalib.txt or a table of a curve");
+    check(status, file, &error);
+    return response;
 }
 
 lensprof_response response_of_word(const std::string &word) {
@@ -33,8 +60,10 @@ lensprof_response response_of_word(const std::string &word) {
         std::vector<double> emor;
         for (const auto &number : elements(parts[1])) emor.push_back(number_of(number, any_number));
         status = lensprof_response_set_emor(&response, emor.data(), static_cast<uint32_t>(emor.size()));
+    } else if (path_exists(word)) {
+        response = response_of_file(word);
     } else {
-        throw std::invalid_argument(word + ": use linear, srgb, film, gamma:G or emor:a,b,...");
+        throw std::invalid_argument(word + ": use linear, srgb, film, gamma:G, emor:a,b,... or an existing file");
     }
     if (status != LENSPROF_OK)
         throw std::invalid_argument(word + ": is not a monotonic response; use linear, srgb, "

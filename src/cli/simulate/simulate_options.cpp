@@ -104,7 +104,7 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
                    "content of the pictures: landscape (default), sky, wall, foliage or interior");
     command.word(
         "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of_word(word); },
-        "response: srgb (default), linear, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
+        "response: srgb (default), linear, gamma:G, film, emor:a,b,... (EMoR coefficients) or a file (pcalib.txt)");
     command.numbers("--vignetting", o.vignetting, any_number,
                     "falloff k1,k2,k3, or nine numbers for red, green and blue; default -0.3,0.05,-0.15");
     command.flag("--exif", o.exif, "write exposure time and ISO to EXIF, consistent with the true exposures");

@@ -13,7 +13,7 @@ void CameraMotion::add(const Picture &frame, double seconds) {
     constexpr size_t most_frames = 90;
     if (is_known_ || !CornerTracker::can_follow(frame.width, frame.height)) return;
     const TrackedFrame tracked = tracker_.add(frame);
-    if (tracked.is_blank) return;
+    if (tracked.found_again == 0) return;  // blank, plain, or after a cut
     if (first_s_ < 0.0) first_s_ = seconds;
     const double half_diagonals = 0.5 * std::hypot(frame.width, frame.height) / std::max(frame.width, frame.height);
     motions_.push_back(tracked.motion * half_diagonals);

@@ -21,7 +21,7 @@ StillStart find_still_start(const FrameSource &source);
 
 class CameraMotion {
 public:
-    // The next frame; those after the first three seconds, or 90 frames, are not looked at.
+    // The next frame; those after the first three seconds with scene points, or 90 such frames, are not looked at.
     void add(const Picture &frame, double seconds);
 
     // Whether enough frames were added for a verdict.

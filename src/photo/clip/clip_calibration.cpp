@@ -85,24 +85,41 @@ double contradiction_ev(const ClipFit &fit, const ClipTracks &clip) {
     return count > 1.0 ? std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))) : 0.0;
 }
 
+// The residual of the same fit with a free response; NaN if that is not possible.
+double rms_of_fitted_response(FitInput input, uint32_t reference, const std::string &path, Events &events) {
+    input.options.free |= LENSPROF_FREE_RESPONSE;
+    input.options.response = nullptr;
+    try {
+        return fit(input, reference, path, events, nullptr).result.heldout_rms;
+    } catch (const Failure &failure) {
+        if (!is_of_input(failure)) throw;
+        return NAN;
+    }
+}
+
 // A fit that contradicts itself or the given times has a wrong response.
-void check_exposures(const ClipFit &fit, const ClipTracks &clip) {
-    if (const int shift = fit.known.better_shift)
+void check_exposures(const ClipFit &fit, const ClipTracks &clip, bool is_response_given) {
+    constexpr double most_times_fitted = 1.5;
+    const double rms = fit.best.result.heldout_rms;
+    if (rms > most_times_fitted * fit.fitted_rms)
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       clip.path
-                          + format(": the given exposure times fit the frames better if they are moved %s by %s; check "
-                                   "which line belongs to which frame",
-                                   shift > 0 ? "up" : "down", counted(size_t(std::abs(shift)), "line").c_str()),
-                      LENSPROF_REASON_KNOWN_CONTRADICT);
-    if (fit.known.rms_ev > largest_known_error_ev) refuse_times(clip, fit.known.rms_ev);
+                          + format(": the given response leaves a residual of %.1f levels, a fitted one %.1f; give the "
+                                   "response of this camera at these settings, or omit it",
+                                   rms, fit.fitted_rms),
+                      LENSPROF_REASON_UNDETERMINED);
+    if (fit.known.better_shift) refuse_shifted_times(clip, fit.known.better_shift);
+    if (fit.known.rms_ev > KnownAgreement::largest_ev) refuse_times(clip, fit.known.rms_ev);
     constexpr double largest_ev = 0.03;
     const double error_ev = contradiction_ev(fit, clip);
     if (fit.best.corrects() && error_ev > largest_ev)
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       clip.path
                           + format(": the exposures of keyframes in the fit differ from those of all frames by %.2f EV "
-                                   "(rms), so that the response is wrong; record more motion and change of exposure",
-                                   error_ev),
+                                   "(rms), so that the response is wrong; %s",
+                                   error_ev,
+                                   is_response_given ? "give that of this camera at these settings, or omit it"
+                                                     : "record more motion and change of exposure"),
                       LENSPROF_REASON_UNDETERMINED);
 }
 
@@ -130,7 +147,7 @@ std::unique_ptr<lensprof_profile> ClipFit::profile() const {
     return profile;
 }
 
-ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
+static ClipFit fit_once(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
     ClipFit fit_of_clip;
     auto clock = std::chrono::steady_clock::now();
     auto &keyframes = fit_of_clip.keyframes = scattered(choose_keyframes(clip, o.most_keyframes));
@@ -153,7 +170,9 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     report.exposures_given = !o.known_ev.empty();
     FitOptions options = o.fit;
     options.method = LENSPROF_METHOD_RADIANCE;
+    if (o.response) options.gamma_from = LENSPROF_GAMMA_KNOWN;
     input.options = fit_options(options);
+    if (o.response) input.options.response = &*o.response;
     input.options.channels = clip.channels;
     input.options.reference = report.reference;
     input.options.moving_camera = 1;
@@ -168,10 +187,35 @@ ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTrac
     report.fit = best.result, report.held = best.held, report.verdict = best.verdict;
     name_images(report.names, report.verdict);
     report.exposures = best.exposures, report.reference = best.reference;
+    if (o.response) fit_of_clip.fitted_rms = rms_of_fitted_response(input, report.reference, clip.path, events);
     events.update("exposures", 0.9);
     fit_of_clip.known = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
-    check_exposures(fit_of_clip, clip);
+    return fit_of_clip;
+}
+
+// Names the frames of wrong exposures, numbered from 1, and forgets these.
+static void leave_out(const KnownAgreement &known, ClipOptions &o, const ClipTracks &clip, Events &events) {
+    constexpr size_t most_listed = 8;
+    std::string list;
+    for (size_t n = 0; n < known.wrong.size(); n++) {
+        o.known_ev[known.wrong[n]] = NAN;
+        if (n < most_listed) list += (n ? ", " : "") + std::to_string(known.wrong[n] + 1);
+    }
+    if (known.wrong.size() > most_listed) list += format(" and %zu more", known.wrong.size() - most_listed);
+    events.warn(
+        clip.path,
+        format("given exposures differ by up to %.2f EV from what the frames show, and are not used: ", known.wrong_ev)
+            + (known.wrong.size() > 1 ? "frames " : "frame ") + list);
+}
+
+ClipFit fit_clip(ClipOptions o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
+    ClipFit fit_of_clip = fit_once(o, key, clip, events);
+    if (!fit_of_clip.known.wrong.empty()) {
+        leave_out(fit_of_clip.known, o, clip, events);
+        fit_of_clip = fit_once(o, key, clip, events);
+    }
+    check_exposures(fit_of_clip, clip, o.response.has_value());
     complete_errors(fit_of_clip, clip);
     return fit_of_clip;
 }

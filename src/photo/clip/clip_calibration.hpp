@@ -1,7 +1,9 @@
 // The calibration of a clip: response, falloff, and the exposure of every frame.
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,9 @@ namespace lensprof {
 
 struct ClipOptions {
     FitOptions fit;
-    std::vector<double> known_ev;  // per frame, NaN = unknown; empty: none is known
-    double known_sigma_ev = 0.02;  // standard error of each
+    std::optional<lensprof_response> response;  // known, and not fitted
+    std::vector<double> known_ev;               // per frame, NaN = unknown; empty: none is known
+    double known_sigma_ev = 0.02;               // standard error of each
     uint32_t most_keyframes = 60;
 };
 
@@ -23,13 +26,15 @@ struct ClipFit {
     std::vector<uint32_t> keyframes;      // in the order of the fit
     size_t points = 0, observations = 0;  // of the fit
     KnownAgreement known;                 // of the known exposures with the frames'
+    double fitted_rms = NAN;              // residual that a fitted response leaves, levels, where one is given
 
     std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone
 };
 
 // Fits response, falloff, and exposures of keyframes with the method radiance, then sets the exposures of all frames of
-// the clip. Failure (not usable) for a clip in which no scene points are followed, for known exposures that the frames
-// contradict, and for a fit whose exposures are not those of the frames.
-ClipFit fit_clip(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events);
+// the clip. A few known exposures that the frames contradict are left out, with a warning. Failure (not usable) for a
+// clip in which no scene points are followed, for known exposures that the frames contradict, for a fit whose
+// exposures are not those of the frames, and for a given response that leaves a far larger residual than a fitted one.
+ClipFit fit_clip(ClipOptions o, const lensprof_profile_key &key, ClipTracks &clip, Events &events);
 
 }  // namespace lensprof

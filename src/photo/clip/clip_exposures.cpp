@@ -159,41 +159,6 @@ void set_exposures(const Levels &levels, ClipTracks &clip) {
     }
 }
 
-// Differences of the exposures from those known `shift` frames later, EV rms, each segment relative to its mean; NaN:
-// none is known.
-double error_of_known(const std::vector<double> &known_ev, int shift, const ClipTracks &clip) {
-    struct Sum {
-        double value = 0.0, squares = 0.0, frames = 0.0;
-    };
-    std::map<uint32_t, Sum> of_segment;
-    for (size_t i = 0; i < known_ev.size(); i++) {
-        const size_t line = i + static_cast<size_t>(shift);  // beyond the end also for negative numbers
-        if (clip.frames[i].state != ClipState::measured || line >= known_ev.size() || std::isnan(known_ev[line]))
-            continue;
-        const double difference = known_ev[line] - clip.frames[i].exposure.ev;
-        Sum &sum = of_segment[clip.frames[i].segment];
-        sum.value += difference, sum.squares += difference * difference, sum.frames++;
-    }
-    double squares = 0.0, count = 0.0;
-    for (const auto &[segment, sum] : of_segment) {
-        squares += std::max(0.0, sum.squares - sum.value * sum.value / sum.frames);
-        count += sum.frames;
-    }
-    return count > 0.0 ? std::sqrt(squares / count) : NAN;
-}
-
-KnownAgreement agreement_with(const std::vector<double> &known_ev, const ClipTracks &clip) {
-    constexpr double much_better = 0.5, shifted_ev = 0.02;
-    KnownAgreement agreement{error_of_known(known_ev, 0, clip), 0};
-    if (!(agreement.rms_ev > shifted_ev)) return agreement;
-    double best_ev = much_better * agreement.rms_ev;
-    for (const int shift : {-2, -1, 1, 2}) {
-        const double error_ev = error_of_known(known_ev, shift, clip);
-        if (error_ev < best_ev) best_ev = error_ev, agreement.better_shift = shift;
-    }
-    return agreement;
-}
-
 }  // namespace
 
 KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip) {
@@ -205,7 +170,7 @@ KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, 
     for (const ChainRatio &ratio : ratios)
         if (ratio.to == ratio.from + 1) clip.frames[ratio.to].ev_sigma = ratio.sigma;
     const KnownAgreement agreement = agreement_with(known.ev, clip);
-    if (!(agreement.rms_ev < largest_known_error_ev) || agreement.better_shift) return agreement;
+    if (!agreement.is_good()) return agreement;
     // The known exposures hold what the ratios add up to, and connect the segments.
     std::vector<uint8_t> is_known(clip.frames.size(), 0);
     for (uint32_t i = 0; i < is_known.size(); i++) is_known[group_of[i]] |= std::isfinite(known.ev[i]);

@@ -2,32 +2,22 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "fit/base/chained.hpp"
-#include "photo/clip/clip_tracks.hpp"
+#include "photo/clip/given_times.hpp"
 
 namespace lensprof {
-
-constexpr double largest_known_error_ev = 0.1;  // rms, above which known exposures are not those of these frames
 
 struct ClipModel {
     lensprof_response response;
     std::array<lensprof_vignetting, 3> falloff;
 };
 
-// How known exposures agree with those of the frames.
-struct KnownAgreement {
-    double rms_ev = NAN;   // each segment relative to its mean; NaN: none is known
-    int better_shift = 0;  // frames by which the known exposures come too late, if they then agree much better
-};
-
 // Sets state, segment and exposure of all frames. Every frame is compared with those 1, 2, 4, ... 256 frames before it:
 // the ratio of two frames is the mode over the scene points that both show. The exposures are the least squares
 // solution of all ratios, so that errors do not add up over the life of a point. Frames that are not connected form
 // segments, each relative to its geometric mean. Known exposures, one per frame with NaN for none, hold and connect
-// segments unless they contradict the ratios by 0.1 EV (rms) or fit other frames. Returns how they agree before they
-// enter.
+// segments unless they contradict the ratios. Returns how they agree before they enter.
 KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, ClipTracks &clip);
 
 }  // namespace lensprof
