@@ -1,5 +1,6 @@
 // `lensprof calibrate` of frames of a moving camera: a folder of rendered frames, and videos that ffmpeg makes of them.
 #include <functional>
+#include <map>
 #include <sstream>
 
 #include "clip_scenes.hpp"
@@ -135,6 +136,11 @@ void test_known_response(void **) {
     assert_model("named");
     must_exit(done, words_with(in_folder("named/pcalib.txt"), "of_file"));
     assert_true(exposure_error("of_file", frames) < 0.02);
+    assert_refused(usage, words_with(in_folder("of_file/pcalib.txt"), "of_file"), {"pcalib.txt: would be overwritten"});
+    assert_refused(
+        not_usable,
+        {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--no-store", "--response", "gamma:1.5"},
+        {"the given response and times contradict each other", "times as large in EV"});
     assert_refused(not_usable, words_with("film", "nothing"),
                    {"the given response leaves a residual of", "give the response of this camera at these settings"});
     save_text(in_folder("short.txt"), "0 1 2\n");
@@ -144,6 +150,35 @@ void test_known_response(void **) {
     assert_refused(usage, {"calibrate", in_folder("moving/images"), "-o", in_folder("nothing"), "--response", "srgb"},
                    {"--response: is for clips", "add --moving"});
     assert_false(fs::exists(in_folder("nothing")));
+}
+
+// A pan through a lens without falloff, with the response of a power, shows exposures alone: files of response and
+// falloff are not written.
+void test_exposures_only(void **) {
+    if (!can_read_video()) skip();
+    const Wall wall;
+    fs::create_directories(folder / "even");
+    for (uint32_t i = 0; i < 24; i++) {
+        Picture frame = rendered_black();
+        uint32_t state = i + 1;
+        for (uint32_t y = 0; y < height; y++)
+            for (uint32_t x = 0; x < width; x++)
+                for (size_t c = 0; c < 3; c++) {
+                    state = state * 1664525u + 1013904223u;
+                    const double light =
+                        std::min(0.5 * wall.at(x + 6.0 * i, y + 20.0, c) * std::exp2(0.15 * true_ev(i)), 1.0);
+                    const double level = 255.0 * std::pow(light, 1.0 / gamma_of_camera) + (state >> 24) / 256.0;
+                    frame.pixels[y * frame.row_bytes + 3 * x + c] = static_cast<uint8_t>(std::min(level, 255.0));
+                }
+        write_picture(in_folder("even/" + frame_name(i)), frame);
+    }
+    const Outcome outcome =
+        run_words({"calibrate", in_folder("even"), "--moving", "-o", in_folder("exposed"), "--no-store"});
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err, "[exposures_only]"));
+    assert_true(contains(outcome.err, "pcalib.txt and vignette.png are not written"));
+    assert_true(fs::exists(in_folder("exposed/times.txt")));
+    assert_false(fs::exists(in_folder("exposed/pcalib.txt")) || fs::exists(in_folder("exposed/vignette.png")));
 }
 
 // Times connect the scenes before and after a cut; without them each has its own mean.
@@ -281,24 +316,44 @@ void test_deep_grey_frames(void **) {
     must_exit(done, words);
 }
 
-// Exposure times of the frames of "moving".
+// Exposure times of the frames of "moving"; NaN: none.
 void write_times(const std::string &name, const std::function<double(uint32_t)> &ev) {
     std::ofstream times(in_folder(name));
-    for (uint32_t i = 0; i < frames; i++) times << i << " " << i << " " << 10.0 * std::exp2(ev(i)) << "\n";
+    for (uint32_t i = 0; i < frames; i++) {
+        times << i << " " << i;
+        if (std::isfinite(ev(i))) times << " " << 10.0 * std::exp2(ev(i));
+        times << "\n";
+    }
 }
 
-// One wrong exposure time is named, and not used.
-void test_a_wrong_line(void **) {
+Words words_with_times(const std::string &times) {
+    return {"calibrate", in_folder("moving"), "-o", in_folder("slip"), "--no-store", "--times", in_folder(times)};
+}
+
+// One wrong exposure time, also the first or last, is named and not used; many are refused.
+void test_wrong_lines(void **) {
     if (!can_read_video()) skip();
-    for (const double error_ev : {-3.0, 0.5}) {
-        write_times("slip.txt", [&](uint32_t i) { return true_ev(i) + (i == 16 ? error_ev : 0.0); });
-        const Outcome outcome = run_words({"calibrate", in_folder("moving"), "-o", in_folder("slip"), "--no-store",
-                                           "--overwrite", "--times", in_folder("slip.txt")});
+    for (const auto &[wrong, error_ev] : {std::pair{16u, -3.0}, {0u, 0.5}, {frames - 1, -0.4}}) {
+        write_times("slip.txt", [&](uint32_t i) { return true_ev(i) + (i == wrong ? error_ev : 0.0); });
+        const Outcome outcome = run_words(words_with_times("slip.txt"));
         assert_int_equal(outcome.code, done);
-        assert_true(contains(outcome.err, "are not used: frame 17\n"));
+        assert_true(contains(outcome.err, "are not used: frame " + std::to_string(wrong + 1) + "\n"));
         assert_true(exposure_error("slip", frames) < 0.02);
         assert_model("slip");
     }
+    write_times("slip.txt", [](uint32_t i) { return true_ev(i) + (i % 5 == 2 ? 1.0 : 0.0); });
+    assert_refused(not_usable, words_with_times("slip.txt"), {"given exposure"});
+}
+
+// Few known exposures, right within 0.04 EV, are neither refused nor left out: they do not show what is wrong.
+void test_few_lines(void **) {
+    if (!can_read_video()) skip();
+    const std::map<uint32_t, double> errors{{0, 0.04}, {1, -0.04}, {22, 0.04}, {47, -0.04}};
+    write_times("few_known.txt", [&](uint32_t i) { return errors.count(i) ? true_ev(i) + errors.at(i) : NAN; });
+    const Outcome outcome = run_words(words_with_times("few_known.txt"));
+    assert_int_equal(outcome.code, done);
+    assert_false(contains(outcome.err, "not used"));
+    assert_true(exposure_error("slip", frames) < 0.1);
 }
 
 void test_refusals(void **) {
@@ -339,7 +394,7 @@ void test_refusals(void **) {
     assert_int_equal(wrong.code, not_usable);
     assert_true(contains(wrong.err, "the given exposure times differ from what the frames show by"));
     assert_false(fs::exists(in_folder("nothing")));
-    for (const uint32_t lines : {1u, 5u}) {
+    for (const uint32_t lines : {1u, 4u}) {
         write_times("late.txt", [&](uint32_t i) { return true_ev(i < lines ? 0 : i - lines); });
         assert_refused(not_usable,
                        {"calibrate", in_folder("moving"), "-o", in_folder("nothing"), "--times", in_folder("late.txt")},
@@ -525,7 +580,8 @@ int main() {
         cmocka_unit_test(test_periodic_shake),   cmocka_unit_test(test_plain_frames),
         cmocka_unit_test(test_look_is_bounded),  cmocka_unit_test(test_wrong_times_are_named_early),
         cmocka_unit_test(test_known_response),   cmocka_unit_test(test_moves_after_a_title),
-        cmocka_unit_test(test_a_wrong_line),
+        cmocka_unit_test(test_wrong_lines),      cmocka_unit_test(test_few_lines),
+        cmocka_unit_test(test_exposures_only),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

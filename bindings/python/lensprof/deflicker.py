@@ -136,6 +136,8 @@ def deflicker(frames: Iterable[Pixels], *, times: Optional[Iterable[float]] = No
     for name, values in zip(("times", "settings_ev", "f_numbers"), known):
         if values is not None and next(values, None) is not None:
             raise ValueError(f"{name}: more values than frames; give one for each")
+    if count < 2:
+        raise ValueError(f"frames: {count or 'no'} frame{'' if count == 1 else 's'}; give at least two")
     made.result = DeflickerResult()
     check(lib.lensprof_deflicker_measure(pointer, byref(made.result), byref(error)), "no exposures", error)
     made.frames = np.zeros(count, dtype=_arrays.DEFLICKER_FRAME_DTYPE)

@@ -32,6 +32,7 @@ struct CalibrateOptions : FolderOptions {
     std::string times, frames, to;  // of a clip, as the next three
     ClipCodec codec;
     std::optional<lensprof_response> response;
+    std::string response_file;
     double frames_per_s = 0.0;
     bool is_moving = false;
     bool json = false, progress = false;
@@ -74,7 +75,11 @@ void declare(Command &command, CalibrateOptions &o) {
                    "frames per second that are used of a video; default all. Of a folder their rate; default 25");
     command.file("--times", o.times, "exposure times of the frames: a file of lines with name, time stamp, exposure");
     command.expert().word(
-        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of_word(word); },
+        "--response", "RESPONSE",
+        [&o](const std::string &word) {
+            o.response = response_of_word(word);
+            o.response_file = is_regular_file(word) ? word : std::string();
+        },
         "response of the frames of a video, if it is known: srgb, linear, gamma:G, film, emor:a,b,... or a file "
         "(pcalib.txt); default: fitted");
     command.folder(
@@ -186,8 +191,8 @@ int run(CalibrateOptions &o, Streams &streams) {
         if (o.one_lens)
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "--one-lens: is for pictures, and a clip has one lens; omit the option");
-        return calibrate_clip({o.inputs[0], o.output, o.times, o.response, o.frames, o.report, o.to, o.codec,
-                               o.frames_per_s, o.store, o.overwrite, o.json, o.progress},
+        return calibrate_clip({o.inputs[0], o.output, o.times, o.response, o.response_file, o.frames, o.report, o.to,
+                               o.codec, o.frames_per_s, o.store, o.overwrite, o.json, o.progress},
                               streams);
     }
     Progress events(streams, o.progress);

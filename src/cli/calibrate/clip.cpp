@@ -92,7 +92,7 @@ std::vector<std::string> write_clip(const ClipCommand &o, const ClipFit &fit, co
     OutputFiles outputs;
     std::vector<std::string> written;
     make_folder(o.output);
-    if (fit.best.corrects()) written = write_model(fit, clip, o.output, outputs);
+    if (fit.best.corrects() && !fit.shows_exposures_only()) written = write_model(fit, clip, o.output, outputs);
     const auto tables = write_exposures(clip, offset_of_times(clip, known_ev), o.output, outputs);
     outputs.commit();
     written.insert(written.end(), tables.begin(), tables.end());
@@ -103,24 +103,16 @@ std::vector<std::string> write_clip(const ClipCommand &o, const ClipFit &fit, co
     return written;
 }
 
-// Prints the result, and writes the page of it.
-void report_clip(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, const ClipTally &tally,
-                 std::vector<std::string> written, const ClipOutput *levelled, const Outcome &outcome,
-                 Streams &streams) {
-    if (!o.report.empty()) written.push_back(o.report);
-    Json json = build_json(fit.report);
-    json["clip"] = clip_json(fit, clip, tally, written, levelled);
-    if (!o.report.empty()) {
-        std::vector<std::string> warnings;
-        for (const Notice &notice : outcome.notices.list)
-            if (notice.severity == LENSPROF_SEVERITY_WARNING) warnings.push_back(notice.line());
-        const std::string page = clip_page(fit, clip, json, command_text(streams.words), warnings);
-        write_file(o.report, page.data(), page.size());
-    }
-    if (o.json)
-        print_json(json, streams.out);
-    else
-        print_clip(fit, clip, tally, written, levelled, streams.out);
+// Writes the page of the result.
+void write_page(const ClipCommand &o, const ClipFit &fit, const ClipTracks &clip, std::vector<double> known_ev,
+                const Json &json, const Outcome &outcome, Streams &streams) {
+    std::vector<std::string> warnings;
+    for (const Notice &notice : outcome.notices.list)
+        if (notice.severity == LENSPROF_SEVERITY_WARNING) warnings.push_back(notice.line());
+    const double offset_ev = offset_of_times(clip, known_ev);
+    for (double &ev : known_ev) ev -= offset_ev;
+    const std::string page = clip_page(fit, clip, known_ev, json, command_text(streams.words), warnings);
+    write_file(o.report, page.data(), page.size());
 }
 
 }  // namespace
@@ -140,7 +132,8 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
         open_frames(o.input, is_of_pictures && o.frames_per_s > 0.0 ? o.frames_per_s : usual_rate, events);
     const std::string times = times_file(o);
     std::vector<std::string> inputs = source->files();
-    if (!times.empty()) inputs.push_back(times);
+    for (const std::string &file : {times, o.response_file})
+        if (!file.empty()) inputs.push_back(file);
     check_conflicts(o, inputs);
     const auto levelled = open_levelled(o, inputs, events);
     const GivenTimes given(times, *source, is_of_pictures || o.frames_per_s <= 0.0);
@@ -156,10 +149,17 @@ int calibrate_clip(const ClipCommand &o, Streams &streams) {
     check_wanted(o, clip);
     events.clear();
     const ClipTally tally(clip);
-    const auto written = write_clip(o, fit, clip, options.known_ev, *source, levelled.get(), events);
+    auto written = write_clip(o, fit, clip, options.known_ev, *source, levelled.get(), events);
     Outcome outcome = store_clip(o, fit, key);
     add_clip_notices(fit, clip, tally, outcome.notices);
-    report_clip(o, fit, clip, tally, written, levelled.get(), outcome, streams);
+    if (!o.report.empty()) written.push_back(o.report);
+    Json json = build_json(fit.report);
+    json["clip"] = clip_json(fit, clip, tally, written, levelled.get());
+    if (!o.report.empty()) write_page(o, fit, clip, options.known_ev, json, outcome, streams);
+    if (o.json)
+        print_json(json, streams.out);
+    else
+        print_clip(fit, clip, tally, written, levelled.get(), streams.out);
     for (const Notice &notice : outcome.notices.list) events.notice(notice.severity, notice.item, notice.text);
     if (!outcome.is_good) print_message(streams, outcome.refusal);
     return static_cast<int>(outcome.is_good ? ExitCode::done : ExitCode::not_usable);

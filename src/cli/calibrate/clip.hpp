@@ -14,6 +14,7 @@ struct ClipCommand {
     std::string input, output;
     std::string times;                          // file with exposure times; empty: none
     std::optional<lensprof_response> response;  // known
+    std::string response_file;                  // with it; empty: none
     std::string levelled;                       // folder of levelled frames, or a video; empty: none
     std::string report;                         // a web page; empty: none
     std::string to;                             // their exposure: mean (also if empty), first, or the number of a frame

@@ -32,7 +32,9 @@ void check_conflicts(const ClipCommand &o, const std::vector<std::string> &input
     if (!o.report.empty()) {
         check_not_reserved(o.report, "report", inputs);
         check_not_reserved(o.report, "report", files);
-        check_not_reserved(o.report, "report", {o.levelled});
+        if (!o.levelled.empty() && is_at_or_in(o.levelled, o.report))
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          o.report + ": the levelled frames have this name; give the report another one");
     }
     if (!o.levelled.empty()) {
         if (is_same_file(o.input, o.levelled))

@@ -103,14 +103,15 @@ GivenTimes::GivenTimes(const std::string &path, const FrameSource &source, bool 
     lines_ = read_times_lines(path);
     const VideoInfo &info = source.info();
     const bool is_of_pictures = info.codec == pictures_codec;
+    if (is_of_pictures) {
+        std::vector<std::string> files;
+        for (uint64_t number = 0; number < info.frames; number++) files.push_back(source.name_of(number));
+        lines_ = lines_of_files(lines_, files);
+    }
     // Containers may count frames that are not shown.
     const double tolerance = is_of_pictures ? 0.0 : 10.0 + 0.05 * double(info.frames);
     if (uses_all_frames && info.frames > 0 && std::abs(double(lines_.size()) - double(info.frames)) > tolerance)
         fail_count(info.frames);
-    if (!is_of_pictures) return;
-    std::vector<std::string> files;
-    for (uint64_t number = 0; number < info.frames; number++) files.push_back(source.name_of(number));
-    lines_ = lines_of_files(lines_, files);
 }
 
 void GivenTimes::fail_count(uint64_t frames) const {

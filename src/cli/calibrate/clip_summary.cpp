@@ -14,17 +14,15 @@
 namespace lensprof {
 namespace {
 
-// The first frames of segments, numbered from 1.
-std::string breaks_of(const ClipTracks &clip) {
-    constexpr int most_listed = 8;
-    std::string list;
-    int count = 0;
-    for (size_t i = 0, segment = 0; i < clip.frames.size(); i++) {
+// The first frames of segments after the first.
+std::vector<uint32_t> breaks_of(const ClipTracks &clip) {
+    std::vector<uint32_t> first;
+    for (uint32_t i = 0, segment = 0; i < clip.frames.size(); i++) {
         if (clip.frames[i].state != ClipState::measured || clip.frames[i].segment == segment) continue;
         segment = clip.frames[i].segment;
-        if (count++ < most_listed) list += (list.empty() ? "" : ", ") + std::to_string(i + 1);
+        first.push_back(i);
     }
-    return count > most_listed ? list + format(" and %d more", count - most_listed) : list;
+    return first;
 }
 
 // What the clip shows of the exponent that response, falloff and exposures share.
@@ -46,17 +44,23 @@ void notice_exponent(const ClipFit &fit, const ClipTracks &clip, const ClipTally
 }
 
 // Known exposures that the clip contradicts show a doubtful response, or wrong times.
-void notice_times(const ClipTracks &clip, double error_ev, Events &notices) {
+void notice_times(const ClipFit &fit, const ClipTracks &clip, Events &notices) {
     constexpr double largest_ev = 0.03;
-    if (error_ev > largest_ev)
-        notices.warn(clip.path, format("measured exposures differ from the given ones by %.3f EV (rms), so that the "
-                                       "response is doubtful; check that the times belong to these frames, or record "
-                                       "more motion and change of exposure",
-                                       error_ev));
+    if (!fit.left_out.empty())
+        notices.warn(clip.path, format("given exposures differ by up to %.2f EV from what the frames show, and are not "
+                                       "used: ",
+                                       fit.left_out_ev)
+                                    + frame_list(fit.left_out));
+    if (fit.known.rms_ev > largest_ev)
+        notices.warn(clip.path,
+                     format("measured exposures differ from the given ones by %.3f EV (rms), most, by %.2f EV, "
+                            "in frame %u; check that the times belong to these frames, or record more "
+                            "motion and change of exposure",
+                            fit.known.rms_ev, fit.known.worst_ev, fit.known.worst_frame + 1));
 }
 
-// Frames at even distances, with what pages of pictures state of them.
-Json page_frames(const ClipTracks &clip) {
+// Frames at even distances, with what pages of pictures state of them. Exposures are relative to the mean.
+Json page_frames(const ClipTracks &clip, const std::vector<double> &known_ev) {
     constexpr size_t most = 200;
     const size_t count = clip.frames.size(), step = (count + most - 1) / most;
     Json frames = Json::array();
@@ -66,7 +70,7 @@ Json page_frames(const ClipTracks &clip) {
         frames.push_back({{"name", format("frame %zu", i + 1)},
                           {"ev", frame.exposure.ev},
                           {"ev_sigma", frame.ev_sigma},
-                          {"known_ev", Json()},
+                          {"known_ev", known_ev.empty() ? Json() : number_or_null(known_ev[i])},
                           {"balance", frame.exposure.white_balance},
                           {"balance_sigma", {0.0, 0.0, 0.0}}});
     }
@@ -89,12 +93,16 @@ void add_clip_notices(const ClipFit &fit, const ClipTracks &clip, const ClipTall
     if (clip.info.is_interlaced) notices.warn(clip.path, "is interlaced; deinterlace it first for better exposures");
     if (clip.info.orientation != 1) notices.note(clip.path, "is shown rotated; the vignette and frames are as stored");
     if (tally.segments > 1)
-        notices.note(clip.path, "new scenes begin at frames " + breaks_of(clip)
+        notices.note(clip.path, "new scenes begin at " + frame_list(breaks_of(clip))
                                     + (tally.groups < 2 ? "; the given times connect them"
                                                         : "; exposures are relative to the mean of each scene"));
     if (tally.blank) notices.note(clip.path, counted(tally.blank, "frame") + " black or white, without exposure");
     if (2 * tally.measured < clip.frames.size())
         notices.warn(clip.path, "most frames have no exposure; if they are not in the order of recording, sort them");
+    if (fit.shows_exposures_only())
+        notices.warn(clip.path,
+                     "shows neither response nor falloff, so that pcalib.txt and vignette.png are not written; if the "
+                     "camera stands still, and clouds or people move, level the frames with `lensprof deflicker`");
     constexpr size_t few_keyframes = 10;
     if (fit.keyframes.size() < few_keyframes)
         notices.warn(clip.path,
@@ -112,7 +120,14 @@ void add_clip_notices(const ClipFit &fit, const ClipTracks &clip, const ClipTall
                             "of these settings is not known better, omit it",
                             rms, fit.fitted_rms));
     notice_exponent(fit, clip, tally, notices);
-    notice_times(clip, fit.known.rms_ev, notices);
+    notice_times(fit, clip, notices);
+}
+
+// Frames numbered from 1.
+static Json numbers_of(const std::vector<uint32_t> &frames) {
+    Json numbers = Json::array();
+    for (const uint32_t frame : frames) numbers.push_back(frame + 1);
+    return numbers;
 }
 
 Json clip_json(const ClipFit &fit, const ClipTracks &clip, const ClipTally &tally,
@@ -127,6 +142,7 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const ClipTally &tall
             {"points", fit.points},
             {"observations", fit.observations},
             {"times_rms_ev", number_or_null(fit.known.rms_ev)},
+            {"times_left_out", numbers_of(fit.left_out)},
             {"frames", clip_frames_json(clip)},
             {"video", levelled ? levelled->json() : Json()},
             {"written", written}};
@@ -145,10 +161,10 @@ void print_clip(const ClipFit &fit, const ClipTracks &clip, const ClipTally &tal
     for (const std::string &name : written) out << "written   " << name << "\n";
 }
 
-std::string clip_page(const ClipFit &fit, const ClipTracks &clip, const Json &result, const std::string &command,
-                      const std::vector<std::string> &warnings) {
+std::string clip_page(const ClipFit &fit, const ClipTracks &clip, const std::vector<double> &known_ev,
+                      const Json &result, const std::string &command, const std::vector<std::string> &warnings) {
     Json page = curves_page(fit.report, clip.path, "Calibration from the frames of a clip", command);
-    page["images"] = page_frames(clip);
+    page["images"] = page_frames(clip, known_ev);
     add_fit_verdict(page, fit.report, warnings);
     page["result"] = result;
     return page_of(page);

@@ -30,8 +30,9 @@ Json clip_json(const ClipFit &fit, const ClipTracks &clip, const ClipTally &tall
 void print_clip(const ClipFit &fit, const ClipTracks &clip, const ClipTally &tally,
                 const std::vector<std::string> &written, const ClipOutput *levelled, std::ostream &out);
 
-// The bytes of the page (cli/page): response, falloff, exposures of up to 200 frames, and `result`.
-std::string clip_page(const ClipFit &fit, const ClipTracks &clip, const Json &result, const std::string &command,
-                      const std::vector<std::string> &warnings);
+// The bytes of the page (cli/page): response, falloff, exposures of up to 200 frames, and `result`. `known_ev`: given
+// exposures, relative to those of the frames; empty: none.
+std::string clip_page(const ClipFit &fit, const ClipTracks &clip, const std::vector<double> &known_ev,
+                      const Json &result, const std::string &command, const std::vector<std::string> &warnings);
 
 }  // namespace lensprof

@@ -12,6 +12,7 @@
 #include "photo/base/utf8.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/registration/registration.hpp"
+#include "photo/video/video.hpp"
 
 namespace lensprof {
 namespace {
@@ -23,6 +24,7 @@ struct Part {
 
 std::vector<Part> optional_parts() {
     return {{"OpenCV", "finds the overlaps of pictures", can_register()},
+            {"libav", "reads and writes videos", can_read_video()},
             {"LibRaw", "reads camera raw files", can_read_raw()},
             {"libheif", "reads HEIC and AVIF", can_read_heif()},
             {"libwebp", "reads WebP", can_read_webp()},

@@ -82,7 +82,9 @@ std::string advice_for(const std::string &situation) {
         {"moving_camera",
          "; use `lensprof calibrate FOLDER --moving` for frames of a moving camera, --rows for lamps that flicker, or "
          "give a part that stands still with --region"},
-        {"moving_frames", "those of `lensprof calibrate FOLDER --moving`, which measures both for a moving camera"},
+        {"moving_frames",
+         "those of `lensprof calibrate FOLDER --moving`, which measures both for a moving camera. If it stands still, and "
+         "clouds or people move, compare a part that stands still with --region"},
         {"name_pictures", "; run `lensprof build` on the pictures with --camera and --lens"},
         {"name_project", "; run `lensprof build` on the project with --camera and --lens"},
         {"no_profile", "; see `lensprof profile list`"},

@@ -7,6 +7,7 @@
 #include <lensprof/formats.h>
 
 #include "cli/program/numbers.hpp"
+#include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
@@ -20,26 +21,37 @@ static double film(double x) {
     return y - 0.04 * std::sin(6.283185307179586 * y);
 }
 
-static lensprof_status take_response(void *response, const lensprof_import_entry *entry) {
-    if (entry->holds != LENSPROF_HOLDS_RESPONSE || entry->profile->responses > 1) return LENSPROF_ERROR_UNSUPPORTED;
-    *static_cast<lensprof_response *>(response) = entry->profile->response[0];
+// What a file of one response holds.
+struct FoundResponse {
+    lensprof_response response{};
+    double change = 0.0;  // that made it increasing, levels
+    bool is_one = false;
+};
+
+static lensprof_status take_response(void *user, const lensprof_import_entry *entry) {
+    auto &found = *static_cast<FoundResponse *>(user);
+    found.is_one = entry->holds == LENSPROF_HOLDS_RESPONSE && entry->profile->responses <= 1;
+    found.response = entry->profile->response[0], found.change = entry->change;
     return LENSPROF_OK;
 }
 
 static lensprof_response response_of_file(const std::string &file) {
+    constexpr double most_changed = 1.0;  // level, as `profile import` doubts
     const std::string bytes = read_text(file, max_text_bytes);
     lensprof_import_options options;
     lensprof_import_options_init(&options);
     options.name = file.c_str();
-    lensprof_response response;
+    FoundResponse found;
     lensprof_error error{};
-    const lensprof_status status =
-        lensprof_import(bytes.data(), bytes.size(), &options, take_response, &response, &error);
-    if (status == LENSPROF_ERROR_UNSUPPORTED)
+    check(lensprof_import(bytes.data(), bytes.size(), &options, take_response, &found, &error), file, &error);
+    if (!found.is_one)
         throw Failure(LENSPROF_ERROR_READ,
-                      file + ": is not a file of one response; give a pcalib.txt or a table of a curve");
-    check(status, file, &error);
-    return response;
+                      file + ": does not hold one response; give a pcalib.txt or a table of a curve");
+    if (found.change > most_changed)
+        throw Failure(
+            LENSPROF_ERROR_READ,
+            file + format(": its values decrease in places, by up to %.1f levels; give an intact file", found.change));
+    return found.response;
 }
 
 lensprof_response response_of_word(const std::string &word) {

@@ -10,15 +10,16 @@ namespace lensprof {
 
 void CameraMotion::add(const Picture &frame, double seconds) {
     constexpr double looked_at_s = 3.0;
-    constexpr size_t most_frames = 90;
+    constexpr size_t most_frames = 90, most_looks = 1500;
     if (is_known_ || !CornerTracker::can_follow(frame.width, frame.height)) return;
     const TrackedFrame tracked = tracker_.add(frame);
-    if (tracked.found_again == 0) return;  // blank, plain, or after a cut
+    is_known_ = ++looks_ >= most_looks;
+    if (tracked.found_again == 0) return;  // the first frame, a blank or plain one, or after a cut
     if (first_s_ < 0.0) first_s_ = seconds;
     const double half_diagonals = 0.5 * std::hypot(frame.width, frame.height) / std::max(frame.width, frame.height);
     motions_.push_back(tracked.motion * half_diagonals);
     travel_ = std::max(travel_, tracked.travel * half_diagonals);
-    is_known_ = seconds >= first_s_ + looked_at_s || motions_.size() >= most_frames;
+    is_known_ = is_known_ || seconds >= first_s_ + looked_at_s || motions_.size() >= most_frames;
 }
 
 StillStart find_still_start(const FrameSource &source) {

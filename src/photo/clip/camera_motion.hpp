@@ -21,7 +21,8 @@ StillStart find_still_start(const FrameSource &source);
 
 class CameraMotion {
 public:
-    // The next frame; those after the first three seconds with scene points, or 90 such frames, are not looked at.
+    // The next frame; those after the first three seconds with scene points, 90 such frames, or 1500 in all, are not
+    // looked at.
     void add(const Picture &frame, double seconds);
 
     // Whether enough frames were added for a verdict.
@@ -35,6 +36,7 @@ public:
 private:
     CornerTracker tracker_;
     std::vector<double> motions_;
+    size_t looks_ = 0;
     double first_s_ = -1.0, travel_ = 0.0;
     bool is_known_ = false;
 };

@@ -59,6 +59,24 @@ std::vector<lensprof_observation> keyframe_observations(const ClipTracks &clip,
     return observations;
 }
 
+// The keyframes and, if few of them have a known exposure, others between them that have: these show the exponent.
+std::vector<uint32_t> with_known(std::vector<uint32_t> keyframes, const std::vector<double> &known_ev,
+                                 const ClipTracks &clip) {
+    constexpr size_t enough = 10;
+    if (known_ev.empty() || keyframes.empty()) return keyframes;
+    const auto is_known = [&](uint32_t frame) { return std::isfinite(known_ev[frame]); };
+    const auto known = size_t(std::count_if(keyframes.begin(), keyframes.end(), is_known));
+    std::vector<uint32_t> further;
+    for (uint32_t frame = keyframes.front(); frame < keyframes.back(); frame++)
+        if (is_known(frame) && clip.frames[frame].observation_count > 0
+            && !std::binary_search(keyframes.begin(), keyframes.end(), frame))
+            further.push_back(frame);
+    const size_t missing = known < enough ? std::min(enough - known, further.size()) : 0;
+    for (size_t n = 0; n < missing; n++) keyframes.push_back(further[n * further.size() / missing]);
+    std::sort(keyframes.begin(), keyframes.end());
+    return keyframes;
+}
+
 // Keyframes in the order of the golden ratio: the fit begins with pairs of neighbours among the observations of a
 // point, and neighbours in time differ little in light and place.
 std::vector<uint32_t> scattered(const std::vector<uint32_t> &keyframes) {
@@ -108,6 +126,26 @@ void check_exposures(const ClipFit &fit, const ClipTracks &clip, bool is_respons
                                    "response of this camera at these settings, or omit it",
                                    rms, fit.fitted_rms),
                       LENSPROF_REASON_UNDETERMINED);
+    if (is_response_given && fit.known.rms_ev > KnownAgreement::largest_ev
+        && fit.known.scaled_rms_ev < 0.5 * KnownAgreement::largest_ev)
+        throw Failure(
+            LENSPROF_ERROR_NOT_USABLE,
+            clip.path
+                + format(": the given response and times contradict each other: they agree with exposures that "
+                         "are %.2f times as large in EV; correct or omit one of them",
+                         fit.known.scale),
+            LENSPROF_REASON_KNOWN_CONTRADICT);
+    if (std::vector<uint32_t> wrong = fit.known.wrong_frames; !wrong.empty()) {
+        wrong.insert(wrong.end(), fit.left_out.begin(), fit.left_out.end());
+        throw Failure(
+            LENSPROF_ERROR_NOT_USABLE,
+            clip.path
+                + format(": given exposures differ by up to %.2f EV from what the frames show, too many to be "
+                         "left out; correct those of ",
+                         std::max(fit.known.worst_ev, fit.left_out_ev))
+                + frame_list(wrong),
+            LENSPROF_REASON_KNOWN_CONTRADICT);
+    }
     if (fit.known.better_shift) refuse_shifted_times(clip, fit.known.better_shift);
     if (fit.known.rms_ev > KnownAgreement::largest_ev) refuse_times(clip, fit.known.rms_ev);
     constexpr double largest_ev = 0.03;
@@ -124,17 +162,20 @@ void check_exposures(const ClipFit &fit, const ClipTracks &clip, bool is_respons
 }
 
 // Adds to the noise of a step what all frames share: how far the given times differ from the frames, codec and tracks
-// included; without times the error of the exponent, which scales all exposures.
+// included, or without times how far the exposures of keyframes do; and the error of an exponent that is not measured,
+// which scales all exposures. The error of a given response is not known.
 void complete_errors(const ClipFit &fit, ClipTracks &clip) {
     const lensprof_fit_result &result = fit.best.result;
-    const double common_ev = std::isfinite(fit.known.rms_ev) ? fit.known.rms_ev : 0.0,
+    const double common_ev = std::isfinite(fit.known.rms_ev) ? fit.known.rms_ev : contradiction_ev(fit, clip),
                  exponent = result.gamma_from == LENSPROF_GAMMA_PRIOR ? result.gamma_sigma : 0.0;
     for (ClipFrame &frame : clip.frames)
         if (frame.state == ClipState::measured)
             frame.ev_sigma = std::hypot(frame.ev_sigma, common_ev, exponent * frame.exposure.ev);
 }
 
-ClipModel model_of(const Fitted &best) { return {best.response_of(0), best.falloff_of(0)}; }
+ClipModel model_of(const Fitted &best) {
+    return {best.response_of(0), best.falloff_of(0), best.result.gamma_from == LENSPROF_GAMMA_PRIOR};
+}
 
 }  // namespace
 
@@ -147,10 +188,12 @@ std::unique_ptr<lensprof_profile> ClipFit::profile() const {
     return profile;
 }
 
-static ClipFit fit_once(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
-    ClipFit fit_of_clip;
+// The frames of the fit, and what it compares.
+static FitInput keyframe_input(const ClipOptions &o, const lensprof_profile_key &key, ClipTracks &clip,
+                               ClipFit &found) {
     auto clock = std::chrono::steady_clock::now();
-    auto &keyframes = fit_of_clip.keyframes = scattered(choose_keyframes(clip, o.most_keyframes));
+    auto &keyframes = found.keyframes =
+        scattered(with_known(choose_keyframes(clip, o.most_keyframes), o.known_ev, clip));
     FitInput input;
     input.observations = keyframe_observations(clip, keyframes);
     if (keyframes.size() < 2 || input.observations.empty())
@@ -158,10 +201,11 @@ static ClipFit fit_once(const ClipOptions &o, const lensprof_profile_key &key, C
                       clip.path + ": no scene points are seen in several frames, because the frames are too dark, "
                                   "blurred or far apart; give a clip of a textured scene with slower motion",
                       LENSPROF_REASON_FEW_PAIRS);
-    fit_of_clip.observations = input.observations.size();
+    found.observations = input.observations.size();
     for (size_t i = 0; i < input.observations.size(); i++)
-        fit_of_clip.points += !i || input.observations[i].point != input.observations[i - 1].point;
-    BuildReport &report = fit_of_clip.report;
+        found.points += !i || input.observations[i].point != input.observations[i - 1].point;
+    BuildReport &report = found.report;
+    for (ClipFrame &frame : clip.frames) frame.is_keyframe = false;
     for (const uint32_t frame : keyframes) {
         clip.frames[frame].is_keyframe = true;
         report.names.push_back(format("frame %u", frame + 1));
@@ -182,42 +226,50 @@ static ClipFit fit_once(const ClipOptions &o, const lensprof_profile_key &key, C
     input.options.camera_kind = report.camera_kind.kind;
     input.images = keyframe_images(o, clip, keyframes, report.reference);
     report.sample_s = lap(clock);
-    fit_of_clip.best = fit(input, report.reference, clip.path, events, &report.quality);
-    const Fitted &best = fit_of_clip.best;
+    return input;
+}
+
+// Fits the keyframes, and sets the exposures of all frames.
+static void fit_frames(const ClipOptions &o, FitInput &input, ClipTracks &clip, Events &events, ClipFit &found) {
+    BuildReport &report = found.report;
+    found.best = fit(input, report.reference, clip.path, events, &report.quality);
+    const Fitted &best = found.best;
     report.fit = best.result, report.held = best.held, report.verdict = best.verdict;
     name_images(report.names, report.verdict);
     report.exposures = best.exposures, report.reference = best.reference;
-    if (o.response) fit_of_clip.fitted_rms = rms_of_fitted_response(input, report.reference, clip.path, events);
     events.update("exposures", 0.9);
-    fit_of_clip.known = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
+    found.known = find_exposures(model_of(best), {o.known_ev, o.known_sigma_ev}, clip);
     events.clear();
-    return fit_of_clip;
 }
 
-// Names the frames of wrong exposures, numbered from 1, and forgets these.
-static void leave_out(const KnownAgreement &known, ClipOptions &o, const ClipTracks &clip, Events &events) {
-    constexpr size_t most_listed = 8;
-    std::string list;
-    for (size_t n = 0; n < known.wrong.size(); n++) {
-        o.known_ev[known.wrong[n]] = NAN;
-        if (n < most_listed) list += (n ? ", " : "") + std::to_string(known.wrong[n] + 1);
-    }
-    if (known.wrong.size() > most_listed) list += format(" and %zu more", known.wrong.size() - most_listed);
-    events.warn(
-        clip.path,
-        format("given exposures differ by up to %.2f EV from what the frames show, and are not used: ", known.wrong_ev)
-            + (known.wrong.size() > 1 ? "frames " : "frame ") + list);
+// Forgets a few known exposures that are wrong; false if no one is, or too many.
+static bool leave_out_wrong(ClipFit &found, ClipOptions &o) {
+    const auto &wrong = found.known.wrong_frames;
+    const auto known =
+        size_t(std::count_if(o.known_ev.begin(), o.known_ev.end(), [](double ev) { return std::isfinite(ev); }));
+    auto &left_out = found.left_out;
+    if (wrong.empty() || left_out.size() + wrong.size() > most_wrong(known + left_out.size())) return false;
+    for (const uint32_t frame : wrong) o.known_ev[frame] = NAN;
+    left_out.insert(left_out.end(), wrong.begin(), wrong.end());
+    std::sort(left_out.begin(), left_out.end());
+    found.left_out_ev = std::max(found.left_out_ev, found.known.worst_ev);
+    return true;
 }
 
 ClipFit fit_clip(ClipOptions o, const lensprof_profile_key &key, ClipTracks &clip, Events &events) {
-    ClipFit fit_of_clip = fit_once(o, key, clip, events);
-    if (!fit_of_clip.known.wrong.empty()) {
-        leave_out(fit_of_clip.known, o, clip, events);
-        fit_of_clip = fit_once(o, key, clip, events);
-    }
-    check_exposures(fit_of_clip, clip, o.response.has_value());
-    complete_errors(fit_of_clip, clip);
-    return fit_of_clip;
+    ClipFit found;
+    FitInput input;
+    do {
+        ClipFit next;
+        next.left_out = found.left_out, next.left_out_ev = found.left_out_ev;
+        input = keyframe_input(o, key, clip, next);
+        fit_frames(o, input, clip, events, next);
+        found = std::move(next);
+    } while (leave_out_wrong(found, o));
+    if (o.response) found.fitted_rms = rms_of_fitted_response(input, found.report.reference, clip.path, events);
+    check_exposures(found, clip, o.response.has_value());
+    complete_errors(found, clip);
+    return found;
 }
 
 }  // namespace lensprof

@@ -26,9 +26,14 @@ struct ClipFit {
     std::vector<uint32_t> keyframes;      // in the order of the fit
     size_t points = 0, observations = 0;  // of the fit
     KnownAgreement known;                 // of the known exposures with the frames'
+    std::vector<uint32_t> left_out;       // frames whose known exposures were not used, because they are wrong,
+    double left_out_ev = 0.0;             // and by how much at most
     double fitted_rms = NAN;              // residual that a fitted response leaves, levels, where one is given
 
     std::unique_ptr<lensprof_profile> profile() const;  // response and falloff alone
+
+    // Whether these are not measured, and exposures alone level the frames.
+    bool shows_exposures_only() const { return report.verdict.find(LENSPROF_REASON_EXPOSURES_ONLY) != nullptr; }
 };
 
 // Fits response, falloff, and exposures of keyframes with the method radiance, then sets the exposures of all frames of

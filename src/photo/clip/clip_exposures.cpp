@@ -169,8 +169,8 @@ KnownAgreement find_exposures(const ClipModel &model, const KnownLevels &known, 
     set_exposures(relative(chained_levels(ratios, is_anchor, 1), group_of, clip), clip);
     for (const ChainRatio &ratio : ratios)
         if (ratio.to == ratio.from + 1) clip.frames[ratio.to].ev_sigma = ratio.sigma;
-    const KnownAgreement agreement = agreement_with(known.ev, clip);
-    if (!agreement.is_good()) return agreement;
+    const KnownAgreement agreement = agreement_with(known.ev, model.is_exponent_open, clip);
+    if (known.ev.empty() || !agreement.is_good()) return agreement;
     // The known exposures hold what the ratios add up to, and connect the segments.
     std::vector<uint8_t> is_known(clip.frames.size(), 0);
     for (uint32_t i = 0; i < is_known.size(); i++) is_known[group_of[i]] |= std::isfinite(known.ev[i]);

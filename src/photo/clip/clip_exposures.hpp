@@ -11,6 +11,7 @@ namespace lensprof {
 struct ClipModel {
     lensprof_response response;
     std::array<lensprof_vignetting, 3> falloff;
+    bool is_exponent_open = false;  // that of typical cameras
 };
 
 // Sets state, segment and exposure of all frames. Every frame is compared with those 1, 2, 4, ... 256 frames before it:

@@ -2,25 +2,36 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "photo/clip/clip_tracks.hpp"
 
 namespace lensprof {
 
-// How known exposures agree with those of the frames.
+// How known exposures agree with those of the frames, each segment relative to its median.
 struct KnownAgreement {
-    double rms_ev = NAN;          // each segment relative to its median; NaN: none is known
-    int better_shift = 0;         // frames by which the known exposures come too late, if they then agree much better
-    std::vector<uint32_t> wrong;  // few frames whose known exposures alone differ
-    double wrong_ev = 0.0;        // by how much at most
+    double rms_ev = NAN;                 // NaN: fewer than two are known
+    double scaled_rms_ev = NAN;          // the same with the exposures of the frames times `scale`, the best factor
+    double scale = 1.0;                  // of the exponent
+    uint32_t worst_frame = 0;            // where they differ most,
+    double worst_ev = 0.0;               // and by how much
+    int better_shift = 0;                // frames by which they come too late, if they then agree much better
+    std::vector<uint32_t> wrong_frames;  // few frames whose known exposures alone differ
 
-    bool is_good() const { return rms_ev < largest_ev && better_shift == 0 && wrong.empty(); }
+    bool is_good() const { return !(rms_ev > largest_ev) && better_shift == 0 && wrong_frames.empty(); }
     static constexpr double largest_ev = 0.1;  // rms, above which known exposures are not those of these frames
 };
 
-// `known_ev`: one per frame, NaN = unknown; the frames have their exposures.
-KnownAgreement agreement_with(const std::vector<double> &known_ev, const ClipTracks &clip);
+// `known_ev`: one per frame, NaN = unknown; the frames have their exposures. `is_exponent_open`: these are known up to
+// a factor, so that rms_ev is scaled_rms_ev.
+KnownAgreement agreement_with(const std::vector<double> &known_ev, bool is_exponent_open, const ClipTracks &clip);
+
+// "frame 17", or "frames 17, 40": numbered from 1, at most eight of them.
+std::string frame_list(std::vector<uint32_t> frames);
+
+// How many of the known exposures may be wrong, and are left out: 3 %, or one.
+size_t most_wrong(size_t known);
 
 // Failure (not usable) for known exposures that differ from what the frames show.
 [[noreturn]] void refuse_times(const ClipTracks &clip, double rms_ev);
@@ -29,7 +40,7 @@ KnownAgreement agreement_with(const std::vector<double> &known_ev, const ClipTra
 [[noreturn]] void refuse_shifted_times(const ClipTracks &clip, int shift);
 
 // The same if the known exposures, one per frame with NaN for none, are certainly not those of these frames. Compared
-// are the changes over 16 frames, all but the twentieth that differs most, with whatever exponent makes them most
+// are the changes over 16 frames, all but the tenth that differs most, with whatever exponent makes them most
 // alike, because the response is not known yet.
 void check_times_early(const ClipTracks &clip, const std::vector<double> &known_ev);
 

@@ -52,7 +52,7 @@ public:
             const TimesLine next = line_of(fields);
             if (!lines.empty() && !(next.time_stamp > lines.back().time_stamp))
                 fail(
-                    format("the time stamp %.17g is not after %.17g of line %zu; correct it, or sort the lines by time",
+                    format("the time stamp %.12g is not after %.12g of line %zu; correct it, or sort the lines by time",
                            next.time_stamp, lines.back().time_stamp, lines.back().number));
             lines.push_back(next);
         }
@@ -175,17 +175,17 @@ ExposureSweep find_sweep(const std::string &folder, Events &events) {
 std::vector<TimesLine> read_times_lines(const std::string &path) { return LineParser(path).lines(); }
 
 std::vector<TimesLine> lines_of_files(const std::vector<TimesLine> &lines, const std::vector<std::string> &files) {
-    if (lines.size() != files.size()) return lines;
+    if (lines.size() < files.size()) return lines;
     PictureNumbers unnamed;
     for (size_t i = 0; i < files.size(); i++) unnamed.emplace(base_name(files[i]), i);
-    std::vector<TimesLine> in_order(lines.size());
+    std::vector<TimesLine> in_order(files.size());
     for (const TimesLine &line : lines) {
         const auto found = find_picture(unnamed, line.name);
-        if (found == unnamed.end()) return lines;
+        if (found == unnamed.end()) continue;  // of a picture that was taken away
         in_order[found->second] = line;
         unnamed.erase(found);
     }
-    return in_order;
+    return unnamed.empty() ? in_order : lines;
 }
 
 std::vector<double> read_exposure_times(const std::string &path, const std::vector<std::string> &files, bool is_whole,

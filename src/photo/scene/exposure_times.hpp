@@ -29,8 +29,8 @@ struct TimesLine {
 // and exposures that are not positive numbers or that no camera has.
 std::vector<TimesLine> read_times_lines(const std::string &path);
 
-// The lines in the order of `files` if they name each of these once and nothing else, as in read_exposure_times;
-// otherwise the lines as they are.
+// The lines of `files`, in their order, if each of these is named, as in read_exposure_times; otherwise all lines as
+// they are.
 std::vector<TimesLine> lines_of_files(const std::vector<TimesLine> &lines, const std::vector<std::string> &files);
 
 // The exposures of `files`, EV, NaN where the file states none. The exposure times may have any unit, because only

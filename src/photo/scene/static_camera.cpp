@@ -49,6 +49,7 @@ Scene static_scene(const std::vector<std::string> &files, bool free_balance) {
     for (const std::string &file : files) {
         if (is_folder(file))
             throw Failure(LENSPROF_ERROR_READ, file + ": cannot read: it is a folder; give its pictures");
+        if (!path_exists(file)) throw Failure(LENSPROF_ERROR_READ, file + ": cannot be opened: no such file or folder");
         refuse_other_kind(file);
     }
     if (files.size() < 2)
