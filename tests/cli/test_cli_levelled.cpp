@@ -376,8 +376,10 @@ void test_moving_video(void **) {
     assert_true(level(after[0], 4, 4) > 1.1 * level(before[0], 4, 4));
     assert_refused(usage, words + Words{in_folder("x.mp4"), "--fps", "5"}, {"x.mp4: a video has all frames"});
     assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--to", "3"}, {"--to: is for levelled frames"});
-    assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--report", in_folder("x.html")},
-                   {"--report: there is no page of a clip", "exposures.svg"});
+    assert_refused(usage,
+                   {"calibrate", source, "-o", in_folder("x"), "--report", in_folder("y.html"), "--frames",
+                    in_folder("y.html/levelled")},
+                   {"y.html: the levelled frames have this name"});
     assert_refused(usage, {"calibrate", source, "-o", in_folder("x"), "--one-lens"}, {"--one-lens: is for pictures"});
     assert_refused(usage, words + Words{source}, {"moving.mp4: is the input"});
     for (const auto &[frame, reason] :

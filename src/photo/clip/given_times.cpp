@@ -29,13 +29,13 @@ double scale_of(const std::vector<ExposurePair> &all) {
     return squares > 0.0 ? std::clamp(both / squares, least, most) : 1.0;
 }
 
+double error_ev(const ExposurePair &pair, double scale) { return pair.given - scale * pair.seen; }
+
 double rms_error(const std::vector<ExposurePair> &all, double scale) {
     double squares = 0.0;
-    for (const ExposurePair &one : all) squares += (one.given - scale * one.seen) * (one.given - scale * one.seen);
+    for (const ExposurePair &one : all) squares += error_ev(one, scale) * error_ev(one, scale);
     return all.empty() ? NAN : std::sqrt(squares / double(all.size()));
 }
-
-double error_ev(const ExposurePair &pair, double scale) { return pair.given - scale * pair.seen; }
 
 // Exposures of frames, and those known `shift` frames later, so that their differences have the median 0 in each
 // segment.
