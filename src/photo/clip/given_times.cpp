@@ -76,22 +76,21 @@ void find_wrong(const std::vector<ExposurePair> &pairs, double scale, KnownAgree
 
 // The shift by which known exposures agree much better, whatever the exponent: wrong ones change that of the fit. By
 // more than two frames, only clearly wrong ones. What a shift pushes over the end does not count as an agreement.
-int find_shift(const std::vector<double> &known_ev, const KnownAgreement &as_given, const ClipTracks &clip) {
+int find_shift(const std::vector<double> &known_ev, const KnownAgreement &as_given, size_t compared,
+               const ClipTracks &clip) {
     constexpr double shifted_ev = 0.02, far_shifted_ev = 0.05, much_better = 0.5, far_better = 0.25;
     constexpr double least_compared = 0.9;
     constexpr size_t fewest = 10;
     constexpr int nearby = 2;
-    const auto as_they_are = pairs_of_frames(known_ev, 0, clip);
-    const double unmoved_ev = rms_error(as_they_are, scale_of(as_they_are));
     int best_shift = 0;
     double best_ev = INFINITY;
     for (int shift = -farthest_shift; shift <= farthest_shift; shift++) {
         const bool is_nearby = std::abs(shift) <= nearby;
         if (shift == 0 || !(as_given.rms_ev > (is_nearby ? shifted_ev : far_shifted_ev))) continue;
         const auto moved = pairs_of_frames(known_ev, shift, clip);
-        if (moved.size() < fewest || double(moved.size()) < least_compared * double(as_they_are.size())) continue;
+        if (moved.size() < fewest || double(moved.size()) < least_compared * double(compared)) continue;
         const double moved_ev = rms_error(moved, scale_of(moved));
-        if (moved_ev < (is_nearby ? much_better : far_better) * unmoved_ev && moved_ev < best_ev)
+        if (moved_ev < (is_nearby ? much_better : far_better) * as_given.scaled_rms_ev && moved_ev < best_ev)
             best_ev = moved_ev, best_shift = shift;
     }
     return best_shift;
@@ -152,7 +151,7 @@ KnownAgreement agreement_with(const std::vector<double> &known_ev, bool is_expon
         if (const double size = std::abs(error_ev(pair, scale)); size > agreement.worst_ev)
             agreement.worst_ev = size, agreement.worst_frame = pair.frame;
     find_wrong(pairs, scale, agreement);
-    if (agreement.wrong_frames.empty()) agreement.better_shift = find_shift(known_ev, agreement, clip);
+    if (agreement.wrong_frames.empty()) agreement.better_shift = find_shift(known_ev, agreement, pairs.size(), clip);
     return agreement;
 }
 
