@@ -14,6 +14,11 @@ namespace {
 
 constexpr uint32_t frames = 48;
 
+// Builds without libav or OpenCV do not read clips.
+void skip_without_video() {
+    if (!can_read_video()) skip();
+}
+
 std::vector<std::vector<double>> numbers_in(const std::string &path) {
     std::vector<std::vector<double>> lines;
     std::ifstream file(path);
@@ -72,7 +77,7 @@ void assert_model(const std::string &out) {
 
 // Response, falloff and exposures of a folder as cameras of visual odometry record it.
 void test_folder(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     fs::create_directories(folder / "levelled");
     save_text(in_folder("levelled/frame_00099.png"), "of a longer clip");
     save_text(in_folder("levelled/notes.txt"), "kept");
@@ -104,7 +109,7 @@ void test_folder(void **) {
 }
 
 void test_video(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const std::string clip = encoded("moving", "clip.mkv", "-c:v ffv1 -pix_fmt yuv444p");
     const std::string text = must_exit(done, {"calibrate", clip, "-o", in_folder("seen"), "--no-store", "--times",
                                               in_folder("moving") + "/times.txt"});
@@ -123,7 +128,7 @@ void test_video(void **) {
 
 // A given response determines the exponent without exposure times. One of another shape is refused.
 void test_known_response(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const auto words_with = [](const std::string &response, const std::string &out) {
         return Words{
             "calibrate", in_folder("moving/images"), "--moving", "-o", in_folder(out), "--no-store", "--response",
@@ -155,7 +160,7 @@ void test_known_response(void **) {
 // A pan through a lens without falloff, with the response of a power, shows exposures alone: files of response and
 // falloff are not written.
 void test_exposures_only(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const Wall wall;
     fs::create_directories(folder / "even");
     for (uint32_t i = 0; i < 24; i++) {
@@ -183,7 +188,7 @@ void test_exposures_only(void **) {
 
 // Times connect the scenes before and after a cut; without them each has its own mean.
 void test_scenes(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     constexpr uint32_t first_scene = 20, skipped = 14;
     fs::create_directories(folder / "scenes/images");
     std::ofstream times(in_folder("scenes/times.txt"));
@@ -217,7 +222,7 @@ Picture plain(uint8_t red, uint8_t green, uint8_t blue) {
 
 // A stationary camera: levelled frames have one brightness.
 void test_deflicker(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     write_frames("tripod", 24, 0.0, false);
     const std::string clip = encoded("tripod", "tripod.mkv", "-c:v ffv1 -pix_fmt yuv444p");
     must_exit(done, {"deflicker", clip, "-o", in_folder("even"), "--to", "mean", "--response", "gamma:2.2"});
@@ -239,7 +244,7 @@ void test_deflicker(void **) {
 
 // Plain frames before the motion do not show a stationary camera.
 void test_moves_after_a_title(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     constexpr uint32_t title_frames = 95;  // more than the first three seconds
     fs::create_directories(folder / "titled/images");
     write_picture(in_folder("title.png"), plain(90, 90, 90));
@@ -255,7 +260,7 @@ void test_moves_after_a_title(void **) {
 
 // Nothing that is read is replaced, and nothing else without permission, unless an earlier run wrote it.
 void test_what_is_kept(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     fs::create_directories(folder / "kept");
     fs::create_directories(folder / "linked/images");
     for (uint32_t i = 0; i < 12; i++) {
@@ -291,7 +296,7 @@ void test_what_is_kept(void **) {
 
 // Grey frames of 16 bits are written as JPEG, and a folder may have any name; a second run replaces its own files.
 void test_deep_grey_frames(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const std::string name = in_folder("caf\xe9");
     fs::create_directories(name);
     for (uint32_t i = 0; i < 24; i++) {
@@ -332,7 +337,7 @@ Words words_with_times(const std::string &times) {
 
 // One wrong exposure time, also the first or last, is named and not used; many are refused.
 void test_wrong_lines(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     for (const auto &slip : {std::pair{16u, -3.0}, {frames - 1, -0.4}}) {
         write_times("slip.txt", [&](uint32_t i) { return true_ev(i) + (i == slip.first ? slip.second : 0.0); });
         const Outcome outcome = run_words(words_with_times("slip.txt"));
@@ -347,7 +352,7 @@ void test_wrong_lines(void **) {
 
 // Few known exposures, right within 0.04 EV, are neither refused nor left out: they do not show what is wrong.
 void test_few_lines(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const std::map<uint32_t, double> errors{{0, 0.04}, {1, -0.04}, {22, 0.04}, {47, -0.04}};
     write_times("few_known.txt", [&](uint32_t i) { return errors.count(i) ? true_ev(i) + errors.at(i) : NAN; });
     const Outcome outcome = run_words(words_with_times("few_known.txt"));
@@ -357,7 +362,7 @@ void test_few_lines(void **) {
 }
 
 void test_refusals(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     write_frames("still", 12, 0.0, false);
     const Outcome still = run_words({"calibrate", in_folder("still"), "-o", in_folder("nothing")});
     assert_int_equal(still.code, not_usable);
@@ -427,7 +432,7 @@ bool is_looked_at(uint32_t i) {
 // A stationary camera is named after a look at one frame in six: the others, which are damaged here, are not decoded.
 // A clip that moves after a still second is a clip.
 void test_still_start(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     write_frames("tripod_seen", 12, 0.0, false);
     fs::create_directories(folder / "long_still");
     const std::string damaged = text_of(in_folder("tripod_seen/images/00001.png")).substr(0, 3000);
@@ -452,7 +457,7 @@ void test_still_start(void **) {
 // A shake whose period is the mean step of the look, or part of it, is motion: all frames are decoded, up to the first
 // damaged one.
 void test_periodic_shake(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     const std::string damaged = text_of(in_folder("moving/images/00001.png")).substr(0, 3000);
     for (const std::vector<uint32_t> &shake : {std::vector<uint32_t>{0, 1, 2, 3, 2, 1}, {0, 1, 2}, {0, 2}}) {
         const std::string name = "shake" + std::to_string(shake.size());
@@ -472,7 +477,7 @@ void test_periodic_shake(void **) {
 // Frames of one colour do not show that the camera is stationary: those before the motion do not matter, and a clip of
 // nothing else is named.
 void test_plain_frames(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     constexpr uint32_t plain_frames = 150;
     fs::create_directories(folder / "lead_in");
     write_picture(in_folder("grey.png"), plain(128, 128, 128));
@@ -523,7 +528,7 @@ struct BlackFrames : FrameSource {
 
 // The look at the beginning of a long black clip ends.
 void test_look_is_bounded(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     BlackFrames::Count count;
     const BlackFrames source(count);
     assert_int_equal(find_still_start(source).frames, 0);
@@ -533,7 +538,7 @@ void test_look_is_bounded(void **) {
 
 // Wrong times are named before later frames are read, here damaged ones: by the number of lines, and by their changes.
 void test_wrong_times_are_named_early(void **) {
-    if (!can_read_video()) skip();
+    skip_without_video();
     constexpr uint32_t count = 310, swing = frames - 1;  // to and fro
     const auto place = [](uint32_t i) { return i % (2 * swing) < swing ? i % swing : swing - i % swing; };
     fs::create_directories(folder / "swing");
