@@ -100,8 +100,8 @@ abi-headers: ## save the public headers as those of this release, whose programs
 	mkdir -p tests/install/headers-0.3/lensprof
 	cp include/lensprof/*.h tests/install/headers-0.3/lensprof/
 
-abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
-	python3 bindings/python/tools/make_abi.py
+abi: ## generate the tables of all bindings and abi_dump.c from the public headers (package python3-pycparser)
+	python3 bindings/tools/make_abi.py
 
 lint: test-deps ## format, cppcheck, clang's warnings and clang-tidy over all sources: some ten minutes
 	@cmake/install-packages.sh packages-lint.txt

@@ -1,4 +1,4 @@
-/* Generated from include/lensprof by bindings/python/tools/make_abi.py: do not edit; `make abi` regenerates it. */
+/* Generated from include/lensprof by bindings/tools/make_abi.py: do not edit; `make abi` regenerates it. */
 /* Prints sizes and offsets of structs and values of constants as the C compiler sees them. test_abi.py
  * compares them with the tables of the Python package. */
 #include <lensprof/lensprof.h>

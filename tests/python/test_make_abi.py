@@ -10,7 +10,7 @@ import types
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bindings/python/tools"))
+sys.path.insert(0, str(ROOT / "bindings/tools"))
 try:
     import make_abi
 except SystemExit:  # without pycparser

@@ -1,4 +1,4 @@
-# Generated from include/lensprof by bindings/python/tools/make_abi.py: do not edit; `make abi` regenerates it.
+# Generated from include/lensprof by bindings/tools/make_abi.py: do not edit; `make abi` regenerates it.
 """The C interface as tables: structures, enumerations, constants and functions of the public headers.
 
 Nothing else in the package knows a layout or a number of the C library. Raw structures have the fields
