@@ -34,7 +34,7 @@ FLAGS = {"lensprof_pack"}
 
 @dataclasses.dataclass(frozen=True)
 class Scalar:
-    """A type of C itself or of its standard headers; "void" as a result, or behind a pointer."""
+    """A type of C itself or of its standard headers; "void" as a result, or what a pointer points to."""
     name: str
 
 
@@ -120,7 +120,8 @@ class Interface:
         self.enums: dict = {}  # C name -> {member in C: value}
         self.flags: dict = collections.defaultdict(dict)  # prefix of macros -> the same, of single bits
         self.constants: dict = {}  # other macros -> value
-        self.types: list = []  # ("struct", C name, [(field, type)]), ("opaque", C name), ("callback", C name, Signature)
+        # ("struct", C name, [(field, type)]), ("opaque", C name), ("callback", C name, Signature)
+        self.types: list = []
         self.functions: dict = {}  # name -> Signature
         self.headers: dict = {}  # name of any of these -> name of its header
         self.texts: dict = {}  # of macros, quoted
@@ -168,8 +169,8 @@ class Interface:
             raise Refused(f"{node.coord}: neither typedef nor function")
 
     def _read_inline(self, name: str, node: c_ast.FuncDef) -> None:
-        """An inline function is not exported: other languages make its call of an exported one. Of interest are those that
-        pass the sizes of structures, as `lensprof_x_init(x)`: `lensprof_x_init_sized(x, sizeof *x)`."""
+        """An inline function is not exported: other languages make its call of an exported one. Of interest are those
+        that pass the sizes of structures, as `lensprof_x_init(x)`: `lensprof_x_init_sized(x, sizeof *x)`."""
         statements = node.body.block_items or []
         call = statements[0] if len(statements) == 1 else None
         call = call.expr if isinstance(call, c_ast.Return) else call

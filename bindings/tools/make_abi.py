@@ -15,7 +15,10 @@ import pathlib
 import sys
 
 from headers import Interface, Refused
+from write_java import java_text
+from write_node import node_text
 from write_python import dump_text, python_text
+from write_rust import rust_dump_text, rust_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -24,6 +27,10 @@ def generated(include: pathlib.Path, cc: str) -> dict:
     """Path in the repository -> text, of all files."""
     interface = Interface(include, cc)
     return {"bindings/python/lensprof/_abi.py": python_text(interface),
+            "bindings/rust/lensprof-sys/src/abi.rs": rust_text(interface),
+            "bindings/rust/lensprof-sys/examples/abi_dump.rs": rust_dump_text(interface),
+            "bindings/node/abi.js": node_text(interface),
+            "bindings/java/src/main/java/lensprof/Abi.java": java_text(interface),
             "tests/python/abi_dump.c": dump_text(interface)}
 
 
@@ -48,6 +55,7 @@ def main() -> int:
         if arguments.check:
             print(f"{path}: not what the headers give; run `make abi` and commit it", file=sys.stderr)
         else:
+            (ROOT / path).parent.mkdir(parents=True, exist_ok=True)
             (ROOT / path).write_text(texts[path], encoding="utf-8")
             print(f"wrote {path}")
     return 1 if old and arguments.check else 0

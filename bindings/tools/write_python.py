@@ -107,7 +107,8 @@ def python_text(interface: Interface) -> str:
             "Nothing else in the package knows a layout or a number of the C library. Raw structures have the fields\n"
             "of those in C; users see subclasses of them in the modules by topic.\n"
             '"""\nfrom __future__ import annotations\n\nimport typing\n'
-            + (wrapped("from ctypes import (", used, ")") if used else "") + "from enum import IntEnum, IntFlag\n" + STRUCTURE + "\n" + body)
+            + (wrapped("from ctypes import (", used, ")") if used else "") + "from enum import IntEnum, IntFlag\n"
+            + STRUCTURE + "\n" + body)
 
 
 def dump_text(interface: Interface) -> str:

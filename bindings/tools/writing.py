@@ -16,3 +16,8 @@ def wrapped(head: str, items: list, tail: str) -> str:
             line = " " * len(head)
         line += word if line == head or not line.strip() else " " + word
     return "\n".join([*lines, line if items else head + tail]) + "\n"
+
+
+def short(name: str) -> str:
+    """The name of a macro or an enumerator without the library's."""
+    return name[len("LENSPROF_"):]

@@ -1,4 +1,4 @@
-"""The generator of lensprof._abi and abi_dump.c: synthetic headers, and the committed files are up to date."""
+"""The generator of the tables of all languages: synthetic headers, and the committed files are up to date."""
 import ctypes
 import os
 import pathlib
@@ -22,13 +22,28 @@ VERSION = "".join(f"#define LENSPROF_VERSION_{part} {i}\n" for i, part in enumer
 BASE = "#include <stddef.h>\n#include <stdint.h>\n" + VERSION
 
 
-def from_header(text):
-    """(text of _abi.py, its module, text of abi_dump.c) for a synthetic header."""
+PYTHON = "bindings/python/lensprof/_abi.py"
+RUST = "bindings/rust/lensprof-sys/src/abi.rs"
+RUST_DUMP = "bindings/rust/lensprof-sys/examples/abi_dump.rs"
+NODE = "bindings/node/abi.js"
+JAVA = "bindings/java/src/main/java/lensprof/Abi.java"
+C_DUMP = "tests/python/abi_dump.c"
+
+
+def texts_of(text, **others):
+    """What is generated of a synthetic lensprof.h and other headers."""
     with tempfile.TemporaryDirectory() as folder:
         include = pathlib.Path(folder, "lensprof")
         include.mkdir()
         (include / "lensprof.h").write_text(BASE + text)
-        texts = make_abi.generated(pathlib.Path(folder), CC)
+        for name, other in others.items():
+            (include / f"{name}.h").write_text(other)
+        return make_abi.generated(pathlib.Path(folder), CC)
+
+
+def from_header(text):
+    """(text of _abi.py, its module, text of abi_dump.c) for a synthetic header."""
+    texts = texts_of(text)
     code = texts["bindings/python/lensprof/_abi.py"]
     module = types.ModuleType("made")
     exec(compile(code, "_abi.py", "exec"), vars(module))
@@ -41,23 +56,29 @@ class Fresh(unittest.TestCase):
         self.assertEqual(make_abi.stale(make_abi.generated(ROOT / "include", CC), ROOT), [],
                          "run `make abi` and commit what it writes")
 
-    def test_a_changed_header_makes_both_stale(self):
-        for old, new in ((r"uint32_t pairs;", "uint32_t pairs, planted;"),
-                         (r"LENSPROF_ERROR_BUSY = 46,", "LENSPROF_ERROR_BUSY = 46, LENSPROF_ERROR_PLANTED = 47,")):
-            with tempfile.TemporaryDirectory() as folder:
-                shutil.copytree(ROOT / "include", folder, dirs_exist_ok=True)
-                for path in pathlib.Path(folder, "lensprof").glob("*.h"):
-                    path.write_text(re.sub(old, new, path.read_text()))
-                texts = make_abi.generated(pathlib.Path(folder), CC)
-            self.assertEqual(make_abi.stale(texts, ROOT), list(texts))
-
-    def test_a_changed_function_makes_the_package_stale(self):
+    def stale_after(self, old, new):
+        """The files that are stale after a change of the headers."""
         with tempfile.TemporaryDirectory() as folder:
             shutil.copytree(ROOT / "include", folder, dirs_exist_ok=True)
-            path = pathlib.Path(folder, "lensprof", "base.h")
-            path.write_text(path.read_text().replace("lensprof_version(void)", "lensprof_version(int planted)"))
-            texts = make_abi.generated(pathlib.Path(folder), CC)
-        self.assertEqual(make_abi.stale(texts, ROOT), ["bindings/python/lensprof/_abi.py"])
+            for path in pathlib.Path(folder, "lensprof").glob("*.h"):
+                path.write_text(re.sub(old, new, path.read_text()))
+            return set(make_abi.stale(make_abi.generated(pathlib.Path(folder), CC), ROOT))
+
+    def test_a_changed_structure_makes_all_stale(self):
+        self.assertEqual(self.stale_after("uint32_t pairs;", "uint32_t pairs, planted;"),
+                         {PYTHON, RUST, RUST_DUMP, NODE, JAVA, C_DUMP})
+
+    def test_a_changed_enumeration_makes_tables_stale(self):
+        old = "LENSPROF_ERROR_BUSY = 46,"
+        self.assertEqual(self.stale_after(old, old + " LENSPROF_ERROR_PLANTED = 47,"),
+                         {PYTHON, RUST, NODE, JAVA, C_DUMP})
+
+    def test_a_changed_function_makes_tables_stale(self):
+        self.assertEqual(self.stale_after(r"lensprof_version\(void\)", "lensprof_version(int planted)"),
+                         {PYTHON, RUST, NODE, JAVA})
+
+    def test_a_changed_photograph_function_makes_the_package_stale(self):
+        self.assertEqual(self.stale_after(r"\blensprof_picture_open\(", "lensprof_picture_planted("), {PYTHON})
 
 
 @needs_pycparser
@@ -170,6 +191,69 @@ static inline void lensprof_d_init(lensprof_d *d, uint32_t index) { lensprof_d_i
     def test_a_header_that_does_not_compile_is_named(self):
         with self.assertRaisesRegex(make_abi.Refused, "nowhere.h"):
             from_header('#include "nowhere.h"')
+
+
+LANGUAGES_HEADER = """
+#define LENSPROF_ALL 0xFFFFFFFFu
+#define LENSPROF_UNKNOWN (-1.0)
+#define LENSPROF_FREE_A 0x01u
+typedef enum lensprof_status { LENSPROF_OK = 0, LENSPROF_ERROR_SIZE = 3 } lensprof_status;
+typedef struct lensprof_part { double xy[2][3]; char name[64]; } lensprof_part;
+typedef struct lensprof_whole {
+    uint32_t struct_size;
+    lensprof_part part[2];
+    const uint8_t *mask;
+    size_t n;
+} lensprof_whole;
+typedef struct lensprof_plan lensprof_plan;
+typedef int (*lensprof_progress)(double done, void *user);
+void lensprof_whole_init_sized(lensprof_whole *whole, size_t size);
+static inline void lensprof_whole_init(lensprof_whole *whole) { lensprof_whole_init_sized(whole, sizeof *whole); }
+lensprof_status lensprof_open(const char *path, uint32_t type, lensprof_plan **plan, lensprof_progress progress);
+"""
+
+
+@needs_pycparser
+class Languages(unittest.TestCase):
+    def texts(self):
+        return texts_of(LANGUAGES_HEADER, photo="typedef struct lensprof_picture { int seen; } lensprof_picture;\n"
+                                                "int lensprof_see(const lensprof_picture *picture);\n")
+
+    def holds(self, path, *parts):
+        text = self.texts()[path]
+        self.assertIn("do not edit", text.splitlines()[0])
+        for part in parts:
+            self.assertIn(part, text)
+        self.assertNotIn("lensprof_see", text, "of the photograph library")
+        self.assertNotIn("lensprof_picture", text)
+
+    def test_rust(self):
+        self.holds(RUST, 'pub const VERSION: &str = "0.1.2";', "pub const ALL: u32 = 4294967295;",
+                   "pub const UNKNOWN: f64 = -1.0;", "pub const FREE_A: u32 = 1;",
+                   "    Ok = 0,\n    ErrorSize = 3,\n", "            3 => Some(Self::ErrorSize),",
+                   "    pub xy: [[f64; 3]; 2],\n    pub name: [c_char; 64],\n",
+                   "    pub part: [Part; 2],\n    pub mask: *const u8,\n",
+                   "unsafe { lensprof_whole_init_sized((&mut value as *mut Self).cast(), size_of::<Whole>()) };",
+                   'pub type Progress = Option<unsafe extern "C" fn(done: f64, user: *mut c_void) -> c_int>;',
+                   "pub fn lensprof_open(path: *const c_char, r#type: u32, plan: *mut *mut Plan, "
+                   "progress: Progress) -> c_int;")
+        self.holds(RUST_DUMP, "offset_of!(lensprof_sys::Whole, mask)")
+
+    def test_node(self):
+        self.holds(NODE, "export const VERSION = '0.1.2';", "export const ALL = 4294967295;", "    A: 0x01,\n",
+                   "export const Status = Object.freeze({\n    OK: 0,\n    ERROR_SIZE: 3,\n});",
+                   "        xy: 'double[3][2]',\n",
+                   "        mask: 'uint8_t*',\n", "    ['callback', 'lensprof_progress', ['int', 'double', 'void*']],",
+                   "    lensprof_whole: ['lensprof_whole_init_sized', ['lensprof_whole']],",
+                   "    lensprof_open: ['int', ['char*', 'uint32_t', 'lensprof_plan**', 'lensprof_progress']],")
+
+    def test_java(self):
+        self.holds(JAVA, 'VERSION = "0.1.2";', "int ALL = 0xffffffff;", "double UNKNOWN = -1.0;", "int FREE_A = 1;",
+                   "        OK(0),\n        ERROR_SIZE(3);", "public double[] xy = new double[6];",
+                   "public Part[] part = new Part[2];", "public Pointer mask;", "public Size n = new Size();",
+                   "library.lensprof_whole_init_sized(this, new Size(size()));",
+                   "int invoke(double done, Pointer user);",
+                   "int lensprof_open(String path, int type, Pointer plan, Progress progress);")
 
 
 if __name__ == "__main__":
