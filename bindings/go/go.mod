@@ -1,0 +1,3 @@
+module lensprof
+
+go 1.21
