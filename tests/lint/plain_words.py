@@ -20,7 +20,9 @@ import text_rules
 PROSE = ("*.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
 SOURCES = (
     "include/lensprof/*.h",
+    "bindings/cpp/*.?pp",
     "bindings/python/lensprof/*.py",
+    "bindings/tools/*.py",
     "src/cli/**/*.?pp",
     "src/core/*",
     "src/core/kernels/*",
@@ -31,6 +33,7 @@ SOURCES = (
     "src/store/**/*",
     "tests/*.?",
     "tests/bench/*",
+    "tests/bindings/*",
     "tests/docs/*",
     "tests/firmware/**/*",
     "tests/install/**/*",
