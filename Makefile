@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help wheels platforms deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -73,6 +73,13 @@ bench-store: build ## measure the store with 100 000 profiles
 bench-lookup: build ## measure lookups between stored settings on Lensfun's data, compared with Lensfun's rule
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --lookup
+
+wheels: ## make the wheels of all platforms in dist/ (TARGETS="linux-x86_64 ..." makes some)
+	@cmake/install-packages.sh packages-wheels.txt
+	packaging/wheels/build.py $(TARGETS)
+
+platforms: wheels ## install and run the wheels on other systems: Debian 11 and 13, arm64, musl, Windows
+	packaging/wheels/try.sh
 
 SEQUENCES ?= 60
 

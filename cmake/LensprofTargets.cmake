@@ -90,6 +90,7 @@ function(lensprof_layer name)
   add_library(lensprof_${name} OBJECT ${ARG_SOURCES})
   target_include_directories(lensprof_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(lensprof_${name} PUBLIC lensprof_settings PRIVATE ${ARG_LINK})
+  target_compile_definitions(lensprof_${name} PRIVATE LENSPROF_EXPORTS)
   set_target_properties(lensprof_${name} PROPERTIES
     C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
     CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
@@ -104,7 +105,9 @@ function(lensprof_library name)
     add_library(${name} STATIC ${ARGN})
   else()
     add_library(${name} SHARED ${ARGN})
-    target_link_options(${name} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
-    set_target_properties(${name} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+    if(NOT APPLE AND NOT WIN32) # there the visibility of functions does it
+      target_link_options(${name} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
+      set_target_properties(${name} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+    endif()
   endif()
 endfunction()

@@ -47,11 +47,17 @@
 #define LENSPROF_VERSION_MINOR 3
 #define LENSPROF_VERSION_PATCH 0
 
-#if defined(__GNUC__)
+/* LENSPROF_EXPORTS: the library itself is compiled. Programs for Windows need no declaration of functions that a DLL has. */
+#if defined(_WIN32) && defined(LENSPROF_EXPORTS)
+#define LENSPROF_API __declspec(dllexport)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define LENSPROF_API __attribute__((visibility("default")))
-#define LENSPROF_MUST_USE __attribute__((warn_unused_result))
 #else
 #define LENSPROF_API
+#endif
+#if defined(__GNUC__)
+#define LENSPROF_MUST_USE __attribute__((warn_unused_result))
+#else
 #define LENSPROF_MUST_USE
 #endif
 

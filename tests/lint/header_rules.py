@@ -4,6 +4,7 @@
 usage: header_rules.py [--cc CC] [--cxx CXX] CHECK
 
   alone INCLUDE_DIR     every header compiles by itself, twice in a row, without a warning
+  windows INCLUDE_DIR   the same with clang for Microsoft's ABI; exit 77: clang is not installed
   numbers INCLUDE_DIR   enumerators and numeric macros = enumerators.txt, in the text and for the compiler
   list INCLUDE_DIR      print the content that enumerators.txt should have
   self-check            every check must find a planted violation
@@ -14,6 +15,7 @@ Prints violations; exit 1 if there are any.
 import argparse
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -41,17 +43,26 @@ def headers_of(include):
     return sorted((include / "lensprof").glob("*.h"))
 
 
-def check_alone(cc, cxx, include):
+def check_alone(cc, cxx, include, also=()):
+    """`also`: options that select another target."""
     violations = []
     for header in headers_of(include):
         text = f"#include <lensprof/{header.name}>\n" * 2 + "int lint(void);\n"
         for compiler, options, suffix in ((cc, ["-std=c99"], ".c"), (cxx, ["-std=c++17"], ".cpp")):
-            said = compile_text(compiler, options, include, text, suffix)
+            said = compile_text(compiler, [*also, *options], include, text, suffix)
             if said:
                 violations.append(
-                    f"{header.name}: does not compile alone with {' '.join([compiler, *options])}:\n{said}"
+                    f"{header.name}: does not compile alone with {' '.join([compiler, *also, *options])}:\n{said}"
                 )
     return violations
+
+
+def check_windows(include):
+    """As Microsoft's compiler reads the headers: with its macros, and none of GCC's."""
+    if not shutil.which("clang"):
+        print("header_rules: windows: skipped: clang is not installed")
+        sys.exit(77)
+    return check_alone("clang", "clang", include, ["--target=x86_64-pc-windows-msvc", "-ffreestanding", "-fsyntax-only"])
 
 
 def numbers_of(include):
@@ -163,7 +174,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cc", default="cc")
     parser.add_argument("--cxx", default="c++")
-    parser.add_argument("check", choices=["alone", "numbers", "list", "self-check"])
+    parser.add_argument("check", choices=["alone", "windows", "numbers", "list", "self-check"])
     parser.add_argument("include", nargs="?", type=pathlib.Path)
     options = parser.parse_args()
     if options.check == "self-check":
@@ -173,11 +184,12 @@ def main():
     if options.check == "list":
         print("\n".join(f"{name} {value}" for name, value in numbers_of(options.include)[0]))
         return 0
-    violations = (
-        check_alone(options.cc, options.cxx, options.include)
-        if options.check == "alone"
-        else check_numbers(options.cc, options.include, read_list())
-    )
+    checks = {
+        "alone": lambda: check_alone(options.cc, options.cxx, options.include),
+        "windows": lambda: check_windows(options.include),
+        "numbers": lambda: check_numbers(options.cc, options.include, read_list()),
+    }
+    violations = checks[options.check]()
     print("\n".join(violations) or f"header_rules: {options.check}: no violation")
     return 1 if violations else 0
 

@@ -37,6 +37,17 @@ class Finding(unittest.TestCase):
                                 PYTHONPATH=folder)
             self.assertEqual(result.stdout.strip(), str(copy / "liblensprof.so.0.3"), result.stderr)
 
+    def test_library_beside_the_package_that_is_damaged(self):
+        """It is named. The system's library, which may be another version, does not take its place."""
+        with tempfile.TemporaryDirectory() as folder:
+            copy = pathlib.Path(folder) / "lensprof"
+            shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+            damaged = copy / "liblensprof.so"
+            damaged.write_bytes(b"no library")
+            result = run_python("import lensprof", LENSPROF_LIBRARY=None, PYTHONPATH=folder)
+            self.assertIn(f"ImportError: {damaged}: cannot be loaded (", result.stderr)
+            self.assertIn("install a lensprof for this system", result.stderr)
+
     def test_library_of_the_loader(self):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(os.environ["LENSPROF_LIBRARY"], pathlib.Path(folder) / "liblensprof.so.0.3")

@@ -359,7 +359,19 @@ class TestMissing(unittest.TestCase):
                 "except ImportError as error:\n    print(error)")
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
                               env={**os.environ, "LENSPROF_PHOTO_LIBRARY": "/nowhere/liblensprof-photo.so"})
-        self.assertIn("install lensprof with it", done.stdout, done.stderr)
+        self.assertIn("LENSPROF_PHOTO_LIBRARY=/nowhere/liblensprof-photo.so: cannot be loaded (", done.stdout, done.stderr)
+
+    def test_photograph_library_that_is_not_installed(self):
+        """Nor is it in the folder of the base library."""
+        with tempfile.TemporaryDirectory() as folder:
+            alone = pathlib.Path(shutil.copy(os.environ["LENSPROF_LIBRARY"], folder))
+            code = ("import ctypes.util\nctypes.util.find_library = lambda name: None\nimport lensprof as lp\n"
+                    "lp._library._file_names = lambda name='lensprof': ['nowhere-' + name]\n"
+                    "try:\n    lp.read_picture('a.png')\nexcept ImportError as error:\n    print(error)")
+            environment = {**os.environ, "LENSPROF_LIBRARY": str(alone)}
+            environment.pop("LENSPROF_PHOTO_LIBRARY", None)
+            done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+            self.assertIn("is not installed; install lensprof with it", done.stdout, done.stderr)
 
 
 if __name__ == "__main__":

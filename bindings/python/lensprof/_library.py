@@ -1,7 +1,7 @@
 """The shared libraries: finding them, errors, and handles that must be released.
 
-Search order: the file named by the environment variable LENSPROF_LIBRARY, the folder of this package, the system's
-loader. The photograph library is loaded when it is used first: LENSPROF_PHOTO_LIBRARY, the folder of this package, that
+Search order: the file named by the environment variable LENSPROF_LIBRARY, the folder of this package (wheels have it
+there), the system's loader. The photograph library is loaded when it is used first: LENSPROF_PHOTO_LIBRARY, the folder of this package, that
 of the base library, the system's loader.
 """
 from __future__ import annotations
@@ -30,21 +30,28 @@ def _file_names(name: str = "lensprof") -> list[str]:
     return [f"lib{name}.so.0.3", f"lib{name}.so"]
 
 
-def _find() -> ctypes.CDLL:
-    named = os.environ.get("LENSPROF_LIBRARY")
-    if named:
+def _open(variable: str, name: str, folders: list[pathlib.Path], remedy: str) -> ctypes.CDLL:
+    """The library that the environment variable names, else the one in a folder, else the system's. A file that exists but
+    cannot be loaded is an error: another version elsewhere would be a surprise."""
+    named = os.environ.get(variable)
+    beside = [str(folder / file) for folder in folders for file in _file_names(name) if (folder / file).exists()]
+    if named or beside:
+        path = named or beside[0]
         try:
-            return ctypes.CDLL(named)
+            return ctypes.CDLL(path)
         except OSError as error:
-            raise ImportError(f"LENSPROF_LIBRARY={named}: cannot be loaded ({error}); correct or unset it") from error
-    folder = pathlib.Path(__file__).parent
-    beside = [str(folder / name) for name in _file_names() if (folder / name).exists()]
-    found = ctypes.util.find_library("lensprof")
-    for name in beside + _file_names() + ([found] if found else []):
+            raise ImportError(f"{variable}={path}: cannot be loaded ({error}); correct or unset it" if named else
+                              f"{path}: cannot be loaded ({error}); install a lensprof for this system") from error
+    found = ctypes.util.find_library(name)
+    for file in _file_names(name) + ([found] if found else []):
         with contextlib.suppress(OSError):
-            return ctypes.CDLL(name)
-    raise ImportError("the lensprof library is not installed; install it or set LENSPROF_LIBRARY to the file "
-                      + _file_names()[0])
+            return ctypes.CDLL(file)
+    raise ImportError(f"{remedy}, or set {variable} to the file {_file_names(name)[0]}")
+
+
+def _find() -> ctypes.CDLL:
+    return _open("LENSPROF_LIBRARY", "lensprof", [pathlib.Path(__file__).parent],
+                 "the lensprof library is not installed; install it (`pip install lensprof` brings it)")
 
 
 def _check_version(library: ctypes.CDLL) -> None:
@@ -80,18 +87,10 @@ def photo() -> ctypes.CDLL:
     """The photograph library."""
     global _photo
     if _photo is None:
-        named, names = os.environ.get("LENSPROF_PHOTO_LIBRARY"), _file_names("lensprof-photo")
         folders = [pathlib.Path(__file__).parent, pathlib.Path(lib._name).parent]
-        beside = [str(folder / name) for folder in folders for name in names if (folder / name).exists()]
-        library = None
-        for name in [named] if named else beside + names:
-            with contextlib.suppress(OSError):
-                library = ctypes.CDLL(name)
-                break
-        if library is None:
-            raise ImportError(f"{named or names[0]}: the photograph library of lensprof cannot be loaded, which reads "
-                              "pictures and calibrates folders; install lensprof with it (`make install`), or set "
-                              "LENSPROF_PHOTO_LIBRARY to its file")
+        library = _open("LENSPROF_PHOTO_LIBRARY", "lensprof-photo", folders,
+                        "the photograph library of lensprof, which reads pictures and calibrates folders, is not installed; "
+                        "install lensprof with it (`make install`)")
         _declare(library, _abi.PHOTO_FUNCTIONS)
         _photo = library
     return _photo

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Wheels of the Python package with the library inside, for every platform, made on one machine.
+
+usage: build.py [--check] [TARGET...]     without a TARGET, all of them; build.py --list names them
+
+Writes dist/lensprof-VERSION.tar.gz (the sdist) and dist/*.whl, which are made from that sdist. clang of the package
+ziglang has the C library of every target; sources.py fetches NLopt, SQLite, pugixml and headers. Two runs give the same
+bytes. --check makes each wheel twice, in two folders, and compares them.
+"""
+
+import argparse
+import hashlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tarfile
+from typing import NamedTuple
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+BUILD, DIST = ROOT / "build/wheels", ROOT / "dist"
+
+
+class Target(NamedTuple):
+    """A platform: its name for zig, and the tags of its wheel."""
+
+    zig: str
+    tags: tuple[str, ...]
+
+
+# glibc 2.17 is that of CentOS 7 (2014); macOS 11 of 2020. zig links its own C++ library statically everywhere.
+TARGETS = {
+    "linux-x86_64": Target("x86_64-linux-gnu.2.17", ("manylinux_2_17_x86_64", "manylinux2014_x86_64")),
+    "linux-aarch64": Target("aarch64-linux-gnu.2.17", ("manylinux_2_17_aarch64", "manylinux2014_aarch64")),
+    "musl-x86_64": Target("x86_64-linux-musl", ("musllinux_1_2_x86_64",)),
+    "macos-arm64": Target("aarch64-macos.11.0", ("macosx_11_0_arm64",)),
+    "macos-x86_64": Target("x86_64-macos.11.0", ("macosx_11_0_x86_64",)),
+    "windows-x86_64": Target("x86_64-windows-gnu", ("win_amd64",)),
+}
+
+
+def run(*command: object, **options) -> None:
+    result = subprocess.run([str(word) for word in command], **options)
+    if result.returncode:
+        sys.exit(f"build.py: {' '.join(pathlib.Path(str(word)).name for word in command[:5])}: failed, exit {result.returncode}")
+
+
+def tools() -> pathlib.Path:
+    """A Python with the packages of tools.txt, whose hashes pip checks."""
+    python, wanted = BUILD / "tools/bin/python", (HERE / "tools.txt").read_text()
+    installed = BUILD / "tools/installed.txt"
+    if not installed.exists() or installed.read_text() != wanted:
+        shutil.rmtree(BUILD / "tools", ignore_errors=True)
+        run(sys.executable, "-m", "venv", BUILD / "tools")
+        run(python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--require-hashes",
+            "-r", HERE / "tools.txt")  # fmt: skip
+        installed.write_text(wanted)
+    return python
+
+
+def sdist(python: pathlib.Path) -> pathlib.Path:
+    """The sdist, unpacked."""
+    make = "import sys, scikit_build_core.build as b; print(b.build_sdist(sys.argv[1]))"
+    DIST.mkdir(exist_ok=True)
+    run(python, "-c", make, DIST, cwd=ROOT, stdout=subprocess.DEVNULL)
+    archive = max(DIST.glob("lensprof-*.tar.gz"), key=lambda path: path.stat().st_mtime)
+    shutil.rmtree(BUILD / "sdist", ignore_errors=True)
+    tarfile.open(archive).extractall(BUILD / "sdist")
+    return BUILD / "sdist" / archive.name.replace(".tar.gz", "")
+
+
+def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib.Path, dist: pathlib.Path) -> pathlib.Path:
+    """The wheel of a target, built in `folder`."""
+    target = TARGETS[name]
+    zig = next((BUILD / "tools/lib").glob("python3*/site-packages/ziglang/zig"))
+    defines = {
+        "CMAKE_TOOLCHAIN_FILE": source / "packaging/wheels/zig.cmake",
+        "LENSPROF_ZIG": zig,
+        "LENSPROF_ZIG_TARGET": target.zig,
+        "LENSPROF_SOURCES": BUILD / "sources",
+        # No symbols, and no path of this machine.
+        "CMAKE_SHARED_LINKER_FLAGS": "-s",
+        **{f"CMAKE_{language}_FLAGS": f"-ffile-prefix-map={source}=. -ffile-prefix-map={BUILD}=." for language in ("C", "CXX")},
+    }
+    settings = [f"build-dir={folder / 'build'}", "wheel.tags=" + ";".join(f"py3-none-{tag}" for tag in target.tags)]
+    settings += [f"cmake.define.{name}={value}" for name, value in defines.items()]
+    dist.mkdir(parents=True, exist_ok=True)
+    made = folder / "wheel"
+    for old in (made, folder / "build"):  # the files of an sdist have no times by which to tell what changed; zig has a cache
+        shutil.rmtree(old, ignore_errors=True)
+    run(python, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation",
+        "-w", made, *[f"-C{setting}" for setting in settings], source,
+        env=dict(os.environ, CMAKE_BUILD_PARALLEL_LEVEL=str(os.cpu_count()), ZIG_LOCAL_CACHE_DIR=str(folder / "cache"),
+                 ZIG_GLOBAL_CACHE_DIR=str(BUILD / "cache")))  # fmt: skip
+    path = next(made.glob("*.whl"))
+    return pathlib.Path(shutil.move(path, dist / path.name))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Make the wheels of lensprof.")
+    parser.add_argument("targets", nargs="*", metavar="TARGET")
+    parser.add_argument("--list", action="store_true", help="name the targets")
+    parser.add_argument("--check", action="store_true", help="make each wheel twice, and compare the bytes")
+    options = parser.parse_args()
+    if options.list:
+        print("\n".join(TARGETS))
+        return
+    unknown = [name for name in options.targets if name not in TARGETS]
+    if unknown:
+        parser.error(f"{unknown[0]}: is no target; they are {', '.join(TARGETS)}")
+    python = tools()
+    run(python, HERE / "sources.py", BUILD / "sources")
+    source = sdist(python)
+    for name in options.targets or TARGETS:
+        path = wheel(python, source, name, BUILD / name, DIST)
+        run(python, HERE / "inspect_wheel.py", path)
+        if options.check:
+            again = wheel(python, source, name, BUILD / "again" / name, BUILD / "again/dist")
+            if hashlib.sha256(path.read_bytes()).digest() != hashlib.sha256(again.read_bytes()).digest():
+                sys.exit(f"build.py: {path.name}: the second one differs; compare {path} and {again}")
+            print(f"{path.name}: made twice, the same bytes", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""What a wheel of lensprof contains, compared with what it must.
+
+usage: inspect_wheel.py WHEEL...     prints a line for each; exit 1: something is missing, or too much
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import zipfile
+
+import lief
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+# What every system of the kind has.
+SYSTEM_LIBRARIES = {
+    "linux": {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "ld-linux-x86-64.so.2",
+              "ld-linux-aarch64.so.1"},
+    "musl": {"libc.so"},
+    "macos": {"/usr/lib/libSystem.B.dylib"},
+    "win": {"KERNEL32.dll", "ntdll.dll", "ADVAPI32.dll"},
+}  # fmt: skip
+MACHINES = {"x86_64": ("X86_64", "AMD64"), "aarch64": ("AARCH64",), "arm64": ("ARM64",), "amd64": ("AMD64",)}
+FILES = ("lensprof/__init__.py", "lensprof/_abi.py", "lensprof/py.typed")
+METADATA = ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE", "licenses/NOTICE", "licenses/nlopt/nlopt-2.9.1-COPYING",
+            "licenses/nlopt/slsqp-COPYRIGHT", "licenses/sqlite/LICENSE.txt", "licenses/eigen/LICENSE.txt",
+            "licenses/libcxx/LICENSE.TXT", "sboms/lensprof.cdx.json")  # fmt: skip
+
+
+def kind_of(tag: str) -> str:
+    """The kind of system of a platform tag."""
+    return next(kind for word, kind in (("manylinux", "linux"), ("musllinux", "musl"), ("macosx", "macos"), ("win", "win"))
+                if tag.startswith(word))  # fmt: skip
+
+
+def exported(library: lief.Binary) -> set[str]:
+    if isinstance(library, lief.ELF.Binary):
+        return {s.name for s in library.exported_symbols}
+    if isinstance(library, lief.PE.Binary):
+        return {entry.name for entry in library.get_export().entries}
+    return {s.name.removeprefix("_") for s in library.exported_symbols}
+
+
+def machine(library: lief.Binary) -> str:
+    header = library.header
+    return str(getattr(header, "machine_type", getattr(header, "machine", getattr(header, "cpu_type", "")))).split(".")[-1]
+
+
+def needed(library: lief.Binary) -> set[str]:
+    if isinstance(library, lief.MachO.Binary):
+        return {command.name for command in library.libraries if command.command != lief.MachO.LoadCommand.TYPE.ID_DYLIB}
+    return {getattr(entry, "name", entry) for entry in library.libraries}
+
+
+def faults_of_library(library: lief.Binary, tag: str) -> list[str]:
+    faults, kind = [], kind_of(tag)
+    lines = (ROOT / "tests/lint/exported_symbols.txt").read_text().splitlines()
+    wanted = {line for line in lines if not line.startswith("#")}
+    found = exported(library)
+    if found != wanted:
+        faults.append(f"exports: missing {sorted(wanted - found)[:5]}, too many {sorted(found - wanted)[:5]}")
+    foreign = {name for name in needed(library)
+               if name not in SYSTEM_LIBRARIES[kind] and not name.startswith("api-ms-win-crt-")}  # fmt: skip
+    if foreign:
+        faults.append(f"needs {sorted(foreign)}, which such systems need not have")
+    processor = next(names for word, names in MACHINES.items() if tag.endswith(word))
+    if machine(library) not in processor:
+        faults.append(f"is for {machine(library)}")
+    if isinstance(library, lief.ELF.Binary):
+        faults += [f"has {entry}" for entry in library.dynamic_entries if "PATH" in str(entry.tag)]
+    return faults
+
+
+def faults_of(path: pathlib.Path) -> list[str]:
+    wheel = zipfile.ZipFile(path)
+    names = set(wheel.namelist())
+    version, tags = path.name.split("-")[1], path.stem.split("-")[-1].split(".")
+    info = f"lensprof-{version}.dist-info/"
+    faults = [f"{name} is missing" for name in (*FILES, *(info + name for name in METADATA)) if name not in names]
+    libraries = [name for name in names if name.startswith("lensprof/") and not name.endswith((".py", "py.typed"))]
+    if len(libraries) != 1:
+        return faults + [f"has the files {libraries}, and not one library"]
+    bill = json.loads(wheel.read(info + "sboms/lensprof.cdx.json"))
+    inside = {part["name"] for part in bill["components"]}
+    if not {"nlopt", "sqlite", "pugixml", "eigen", "nlohmann", "libcxx"} <= inside:
+        faults.append(f"the bill of materials names only {sorted(inside)}")
+    library = lief.parse(list(wheel.read(libraries[0])))
+    faults += faults_of_library(library, tags[0])
+    if kind_of(tags[0]) == "linux":  # the versions of the symbols of glibc
+        shown = subprocess.run([sys.executable, "-m", "auditwheel", "show", str(path)], capture_output=True, text=True)
+        if not any(f'"{tag}"' in shown.stdout for tag in tags):
+            faults.append(f"auditwheel: {shown.stdout + shown.stderr}")
+    size = len(wheel.read(libraries[0]))
+    print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB, {libraries[0]} {size / 1e6:.2f} MB, {len(exported(library))} functions, "
+          f"needs {', '.join(sorted(needed(library)))}", flush=True)  # fmt: skip
+    return faults
+
+
+def main() -> None:
+    faults = [f"{path}: {fault}" for path in map(pathlib.Path, sys.argv[1:]) for fault in faults_of(path)]
+    print("\n".join(faults), file=sys.stderr)
+    sys.exit(bool(faults))
+
+
+if __name__ == "__main__":
+    main()
