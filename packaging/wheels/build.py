@@ -21,6 +21,7 @@ from typing import NamedTuple
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 BUILD, DIST = ROOT / "build/wheels", ROOT / "dist"
+DATE = "1767225600"  # of the files in a wheel unless SOURCE_DATE_EPOCH is set: 2026-01-01
 
 
 class Target(NamedTuple):
@@ -92,8 +93,8 @@ def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib
         shutil.rmtree(old, ignore_errors=True)
     run(python, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation",
         "-w", made, *[f"-C{setting}" for setting in settings], source,
-        env=dict(os.environ, CMAKE_BUILD_PARALLEL_LEVEL=str(os.cpu_count()), ZIG_LOCAL_CACHE_DIR=str(folder / "cache"),
-                 ZIG_GLOBAL_CACHE_DIR=str(BUILD / "cache")))  # fmt: skip
+        env={"SOURCE_DATE_EPOCH": DATE, **os.environ, "CMAKE_BUILD_PARALLEL_LEVEL": str(os.cpu_count()),
+             "ZIG_LOCAL_CACHE_DIR": str(folder / "cache"), "ZIG_GLOBAL_CACHE_DIR": str(BUILD / "cache")})  # fmt: skip
     path = next(made.glob("*.whl"))
     return pathlib.Path(shutil.move(path, dist / path.name))
 

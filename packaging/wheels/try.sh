@@ -61,7 +61,10 @@ debian() { # SUITE
     numpy "$version" manylinux_2_17_x86_64
     rm -rf "$folder/work"
     mkdir "$folder/work"
-    cp -r "$links" "$root/dist" "$root/packaging/wheels/exercise.py" "$root/tests/python" "$root/include" "$folder/work"
+    cp -r "$links" "$root/dist" "$root/packaging/wheels/exercise.py" "$root/include" "$folder/work"
+    mkdir "$folder/work/tests" "$folder/work/docs"
+    cp -r "$root/tests/python" "$folder/work/tests"
+    cp "$root/docs/reasons.md" "$folder/work/docs"
     local begun=$SECONDS
     chroot "$folder" sh -e -c '
         cd /work
@@ -69,10 +72,11 @@ debian() { # SUITE
         python3 -m venv empty
         empty/bin/pip install --quiet --no-index --find-links dist --find-links links lensprof
         empty/bin/python exercise.py >exercised.txt
-        cd python
-        LENSPROF_INCLUDE=/work/include/lensprof ../empty/bin/python -m unittest -q test_apply test_exposure test_fields \
+        cd tests/python
+        LENSPROF_INCLUDE=/work/include/lensprof /work/empty/bin/python -m unittest -q test_apply test_exposure test_fields \
             test_fit test_fixed_reference test_flat test_formats test_model test_profile test_reason test_rendering \
-            test_sample test_sensor test_store test_trial test_online 2>&1 | tail -4'
+            test_sample test_sensor test_store test_trial test_online >/work/tests.txt 2>&1 || { cat /work/tests.txt; exit 1; }
+        tail -3 /work/tests.txt'
     exercised "$1 (Python $version)" "$folder/work/exercised.txt"
     echo "$1: installed, exercised and tested in $((SECONDS - begun)) s"
 }
