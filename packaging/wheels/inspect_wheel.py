@@ -23,9 +23,9 @@ SYSTEM_LIBRARIES = {
 }  # fmt: skip
 MACHINES = {"x86_64": ("X86_64", "AMD64"), "aarch64": ("AARCH64",), "arm64": ("ARM64",), "amd64": ("AMD64",)}
 FILES = ("lensprof/__init__.py", "lensprof/_abi.py", "lensprof/py.typed")
-METADATA = ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE", "licenses/NOTICE", "licenses/nlopt/nlopt-2.9.1-COPYING",
+METADATA = ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE", "licenses/NOTICE", "licenses/nlopt/COPYING",
             "licenses/nlopt/slsqp-COPYRIGHT", "licenses/sqlite/LICENSE.txt", "licenses/eigen/LICENSE.txt",
-            "licenses/libcxx/LICENSE.TXT", "sboms/lensprof.cdx.json")  # fmt: skip
+            "licenses/libcxx/LICENSE.TXT", "licenses/pugixml/LICENSE.md", "sboms/lensprof.cdx.json")  # fmt: skip
 
 
 def kind_of(tag: str) -> str:

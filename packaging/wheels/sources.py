@@ -5,11 +5,12 @@ usage: sources.py FOLDER
 
 FOLDER receives a folder of each library (eigen, nlohmann, nlopt, pugixml, sqlite), their licences (licenses/NAME), and
 a list of them for programs that check licences and vulnerabilities (lensprof.cdx.json, CycloneDX 1.6). cmake/
-sources builds lensprof with them: cmake -DLENSPROF_SOURCES=FOLDER. The last step is to rename a complete
-folder, so that a run that was stopped is done again.
+sources builds lensprof with them: cmake -DLENSPROF_SOURCES=FOLDER. A folder of other versions is replaced; the last
+step is to rename a complete one, so that a run that was stopped is done again.
 """
 
 import argparse
+import hashlib
 import json
 import pathlib
 import re
@@ -131,7 +132,8 @@ def collect(unpacked: dict[str, pathlib.Path], compiler: pathlib.Path, folder: p
         texts = folder / "licenses" / library.name
         texts.mkdir(parents=True)
         for text in library.texts:
-            shutil.copy(archive / text, texts / text.replace("/", "-").split("algs-")[-1])
+            parts = pathlib.PurePath(text).parts
+            shutil.copy(archive / text, texts / "-".join(parts[-2:] if "algs" in parts else parts[-1:]))
         if library.name in NOTES:
             (texts / "LICENSE.txt").write_text(NOTES[library.name].format(package=library.package, version=library.version))
         url = f"{library.package}@{library.version}"
@@ -150,7 +152,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Fetch the sources of what a wheel contains.")
     parser.add_argument("folder", type=pathlib.Path)
     folder = parser.parse_args().folder
-    if folder.exists():
+    lists = (HERE / "sources.py", HERE / "sources.txt", HERE / "tools.txt", HERE / "sources/Cargo.lock")
+    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in lists)).hexdigest()
+    if folder.exists() and (folder / "stamp").read_text() == stamp:
         return
     try:
         import ziglang
@@ -160,6 +164,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory(dir=folder.parent) as work:
         collected = pathlib.Path(work) / "collected"
         collect(fetch(pathlib.Path(work)), pathlib.Path(ziglang.__file__).parent, collected)
+        (collected / "stamp").write_text(stamp)
+        shutil.rmtree(folder, ignore_errors=True)
         collected.rename(folder)
 
 

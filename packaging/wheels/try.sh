@@ -70,7 +70,9 @@ debian() { # SUITE
         cd /work
         export LANG=C.UTF-8
         python3 -m venv empty
+        begun=$(date +%s)
         empty/bin/pip install --quiet --no-index --find-links dist --find-links links lensprof
+        echo "pip install lensprof: $(($(date +%s) - begun)) s"
         empty/bin/python exercise.py >exercised.txt
         cd tests/python
         LENSPROF_INCLUDE=/work/include/lensprof /work/empty/bin/python -m unittest -q test_apply test_exposure test_fields \
