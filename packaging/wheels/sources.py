@@ -154,7 +154,7 @@ def main() -> None:
     folder = parser.parse_args().folder
     lists = (HERE / "sources.py", HERE / "sources.txt", HERE / "tools.txt", HERE / "sources/Cargo.lock")
     stamp = hashlib.sha256(b"".join(path.read_bytes() for path in lists)).hexdigest()
-    if folder.exists() and (folder / "stamp").read_text() == stamp:
+    if (folder / "stamp").exists() and (folder / "stamp").read_text() == stamp:
         return
     try:
         import ziglang
