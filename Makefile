@@ -78,9 +78,10 @@ wheels: ## make the wheels of all platforms in dist/ (TARGETS="linux-x86_64 ..."
 	@cmake/install-packages.sh packages-wheels.txt
 	packaging/wheels/build.py $(TARGETS)
 
-platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), and all languages
+platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets
 	packaging/wheels/try.sh
 	tests/bindings/run.sh build/liblensprof.so || [ $$? = 77 ]
+	tests/python/fleet.sh
 
 SEQUENCES ?= 60
 
