@@ -2,9 +2,10 @@
  *
  *     ffmpeg -i clip.mp4 -vf "frei0r=lensprof:lens.json|srgb|1" corrected.mp4
  *
- * Parameters, in this order: `profile`, a file of any format that lensprof_import reads, of which the first usable profile
- * is taken; `response` of the video: "profile", "srgb", or an exponent such as "2.2" (default: that of the profile, or
- * srgb if the profile has none); `strength`, 0 to 1. An error is a sentence on stderr, once, and frames pass unchanged. */
+ * Parameters, in this order: `profile`, a file of any format that lensprof_import reads, of which the first usable
+ * profile is taken; `response` of the video: "profile", "srgb", or an exponent such as "2.2" (default: that of the
+ * profile, or srgb if the profile has none); `strength`, 0 to 1. An error is a sentence on stderr, once, and frames
+ * pass unchanged. */
 #include <frei0r.h>
 #include <lensprof/lensprof.h>
 
@@ -12,14 +13,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PROFILE, RESPONSE, STRENGTH, PARAMETERS };
+enum {
+    PROFILE,
+    RESPONSE,
+    STRENGTH,
+    PARAMETERS
+};
 
 typedef struct lens {
     uint32_t width, height;
     f0r_param_string texts[2]; /* PROFILE and RESPONSE; NULL: not given */
     double strength;
-    int is_ready;              /* 0: the parameters have changed since the plan was made */
-    void *memory;              /* of the plan; NULL: frames pass unchanged */
+    int is_ready; /* 0: the parameters have changed since the plan was made */
+    void *memory; /* of the plan; NULL: frames pass unchanged */
     const lensprof_plan *plan;
 } lens;
 
@@ -27,10 +33,15 @@ int f0r_init(void) { return 1; }
 void f0r_deinit(void) {}
 
 void f0r_get_plugin_info(f0r_plugin_info_t *info) {
-    *info = (f0r_plugin_info_t){.name = "lensprof", .author = "The lensprof authors", .plugin_type = F0R_PLUGIN_TYPE_FILTER,
-        .color_model = F0R_COLOR_MODEL_RGBA8888, .frei0r_version = FREI0R_MAJOR_VERSION,
-        .major_version = LENSPROF_VERSION_MAJOR, .minor_version = LENSPROF_VERSION_MINOR, .num_params = PARAMETERS,
-        .explanation = "Takes the falloff of a lens out of the picture, by its profile"};
+    *info = (f0r_plugin_info_t){.name = "lensprof",
+                                .author = "The lensprof authors",
+                                .plugin_type = F0R_PLUGIN_TYPE_FILTER,
+                                .color_model = F0R_COLOR_MODEL_RGBA8888,
+                                .frei0r_version = FREI0R_MAJOR_VERSION,
+                                .major_version = LENSPROF_VERSION_MAJOR,
+                                .minor_version = LENSPROF_VERSION_MINOR,
+                                .num_params = PARAMETERS,
+                                .explanation = "Takes the falloff of a lens out of the picture, by its profile"};
 }
 
 void f0r_get_param_info(f0r_param_info_t *info, int index) {
@@ -74,7 +85,9 @@ void f0r_get_param_value(f0r_instance_t instance, f0r_param_t value, int index) 
 
 /* The content of a file; NULL with a message if it cannot be read. */
 static void *read_file(const char *path, size_t *size) {
-    enum { LARGEST = 64 << 20 };
+    enum {
+        LARGEST = 64 << 20
+    };
     FILE *file = fopen(path, "rb");
     char *data = file ? malloc(LARGEST) : NULL;
     *size = data ? fread(data, 1, LARGEST, file) : 0;
@@ -153,7 +166,8 @@ static void prepare(lens *this) {
     if (status == LENSPROF_OK && this->memory)
         status = lensprof_plan_init(this->memory, bytes, &options, &this->plan, &error);
     if (status != LENSPROF_OK || !this->memory) {
-        fprintf(stderr, "lensprof: %s: %s\n", this->texts[PROFILE], error.text[0] ? error.text : lensprof_status_name(status));
+        fprintf(stderr, "lensprof: %s: %s\n", this->texts[PROFILE],
+                error.text[0] ? error.text : lensprof_status_name(status));
         free(this->memory), this->memory = NULL;
     }
 }
@@ -164,7 +178,8 @@ void f0r_update(f0r_instance_t instance, double time, const uint32_t *in, uint32
     const ptrdiff_t row_bytes = (ptrdiff_t)this->width * 4;
     if (!this->is_ready) prepare(this);
     const lensprof_image source = {in, row_bytes, this->width, this->height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA};
-    const lensprof_target target = {out, row_bytes, this->width, this->height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA};
+    const lensprof_target target = {out,          row_bytes,          this->width,
+                                    this->height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA};
     if (!this->memory || lensprof_apply(this->plan, &source, &target, 0, 0) != LENSPROF_OK)
         memcpy(out, in, (size_t)row_bytes * this->height);
 }

@@ -47,7 +47,7 @@
 #define LENSPROF_VERSION_MINOR 3
 #define LENSPROF_VERSION_PATCH 0
 
-/* LENSPROF_EXPORTS: the library itself is compiled. Programs for Windows need no declaration of functions that a DLL has. */
+/* LENSPROF_EXPORTS: the library itself is compiled. Programs for Windows call functions of a DLL without a mark. */
 #if defined(_WIN32) && defined(LENSPROF_EXPORTS)
 #define LENSPROF_API __declspec(dllexport)
 #elif defined(__GNUC__) && !defined(_WIN32)
