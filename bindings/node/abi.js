@@ -419,6 +419,10 @@ export const Format = Object.freeze({
     CURVES: 10,
     RADICAL_RESPONSE: 11,
     RADICAL_VIGNETTING: 12,
+    CUBE: 13,
+    GLSL: 14,
+    WGSL: 15,
+    C: 16,
 });
 
 /** lensprof_holds; see lensprof/formats.h. */

@@ -1,5 +1,6 @@
 /* lensprof/formats.h - files of other programs, from and to memory: Lensfun databases, Adobe lens profiles, DNG
- * opcodes, XMP of drone cameras, radical's files, pcalib.txt, response tables and falloff maps; also profiles as JSON.
+ * opcodes, XMP of drone cameras, radical's files, pcalib.txt, response tables and falloff maps; also profiles as JSON,
+ * and as code for GPUs and firmware.
  * docs/formats.md states what each holds and how it is converted. hugin.h, which this header includes, has Hugin's
  * projects and points.
  *
@@ -120,7 +121,11 @@ typedef enum lensprof_format {
     LENSPROF_FORMAT_PCALIB = 9,
     LENSPROF_FORMAT_CURVES = 10,
     LENSPROF_FORMAT_RADICAL_RESPONSE = 11,
-    LENSPROF_FORMAT_RADICAL_VIGNETTING = 12
+    LENSPROF_FORMAT_RADICAL_VIGNETTING = 12,
+    LENSPROF_FORMAT_CUBE = 13, /* one-dimensional */
+    LENSPROF_FORMAT_GLSL = 14, /* GLSL to C: written only */
+    LENSPROF_FORMAT_WGSL = 15,
+    LENSPROF_FORMAT_C = 16
 } lensprof_format;
 
 /* Content of a file format. */
@@ -134,7 +139,7 @@ typedef enum lensprof_holds {
 typedef struct lensprof_format_info {
     uint32_t format;     /* lensprof_format */
     uint32_t holds;      /* lensprof_holds */
-    uint32_t is_written; /* 1: read and written; 0: read only */
+    uint32_t is_written; /* 1: read and written; 0: read only; 2: written only */
     uint32_t is_many;    /* 1: a file may hold several profiles; 0: one */
     const char *name;    /* one word */
     const char *about;   /* one line, with the ending of its files */
@@ -155,7 +160,7 @@ typedef struct lensprof_import_options {
     uint32_t width, height;          /* of the frame, px: required by opcodes, XMP and alsc; otherwise 0 */
     uint32_t columns, rows;          /* alsc: of tables other than 16 x 12 and 32 x 32; otherwise 0 */
     uint32_t layout;                 /* opcodes: lensprof_layout that they apply to */
-    uint32_t curve;                  /* curves: lensprof_curve */
+    uint32_t curve;                  /* curves: lensprof_curve; cube: INVERSE or FORWARD */
     double color_temperature_k;      /* alsc; LENSPROF_UNKNOWN: the file's */
     const char *name;                /* of the file, for detection and provenance.source; or NULL */
     const lensprof_map *map;         /* format MAP: the decoded picture, instead of data; otherwise NULL */
@@ -178,7 +183,8 @@ static inline void lensprof_import_options_init(lensprof_import_options *options
  * above 1 %; an M that increases by more than 0.05, which may be a gain; a response that decreased and was changed by
  * more than 1 level (RESPONSE if by more than a tenth of its range, or with `strict`). options may be NULL.
  * The caller extracts data from containers: opcodes in a TIFF or DNG, XMP in a picture and maps as pictures are
- * UNSUPPORTED, and the text states what to pass. A map has the size of the frame or, if that is not given, its own.
+ * UNSUPPORTED, and the text states what to pass; so is a format that is written only. A map has the size of the frame
+ * or, if that is not given, its own.
  * Errors: ARGUMENT; STRUCT_SIZE; SIZE over 64 MiB; SYNTAX for an empty file and a damaged blob; UNSUPPORTED also if
  * neither content nor name identifies the format; those of the format (SYNTAX, RESPONSE, VIGNETTING, NOT_FOUND,
  * NOT_FINITE; the text names line or entry); MEMORY; the return value of the visitor. All of the file is checked before
@@ -193,10 +199,10 @@ typedef struct lensprof_export_options {
     uint32_t struct_size;
     uint32_t format;        /* lensprof_format */
     uint32_t width, height; /* of the frame, px: required by opcodes, alsc and radical's vignetting; optional for lcp */
-    uint32_t columns, rows; /* alsc: of the tables, 0 = 16 x 12; curves: rows, 0 = 256 */
+    uint32_t columns, rows; /* alsc: of the tables, 0 = 16 x 12; curves: rows, 0 = 256; cube: rows, 0 = 1024 */
     uint32_t layout;        /* opcodes: lensprof_layout that they apply to */
     uint32_t dng_form;      /* opcodes: lensprof_dng_form */
-    uint32_t curve;         /* curves: lensprof_curve */
+    uint32_t curve;         /* curves: lensprof_curve; cube: INVERSE (into light) or FORWARD (out of it) */
     uint32_t pack;          /* blob: lensprof_pack flags */
     double color_temperature_k;          /* alsc; LENSPROF_UNKNOWN: the key's */
     const char *name;                    /* of the file, for AUTO; or NULL */

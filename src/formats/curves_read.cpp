@@ -100,15 +100,18 @@ private:
     bool header_ = false, blue_first_ = false;
 };
 
-std::vector<double> column(const Table &table, size_t index) {
-    std::vector<double> values;
-    for (const Row &row : table.rows) values.push_back(row.values[index]);
-    return values;
+TableColumn column_of(const Table &table, size_t index) {
+    TableColumn column;
+    for (const Row &row : table.rows) {
+        column.values.push_back(row.values[index]);
+        column.lines.push_back(row.line);
+    }
+    return column;
 }
 
 // The first column of 2 or 4 counts the rows, or is evenly spaced from 0.
 void check_index(const Table &table, size_t index) {
-    const std::vector<double> values = column(table, index);
+    const std::vector<double> values = column_of(table, index).values;
     const double step = values.back() / static_cast<double>(values.size() - 1);
     for (size_t i = 0; i < values.size(); i++)
         if (!(step > 0.0 && std::fabs(values[i] - step * static_cast<double>(i)) <= kEven * step))
@@ -121,44 +124,6 @@ void remove_logarithm(std::vector<double> &values, uint32_t curve) {
     const double largest = *std::max_element(values.begin(), values.end());
     for (double &value : values)
         value = curve == LENSPROF_CURVE_LOG ? std::exp(value - largest) : std::pow(10.0, value - largest);
-}
-
-// The values of a channel as a response.
-lensprof_response read_curve(const Table &table, std::vector<double> values, uint32_t curve, Repair &repair) {
-    if (values.size() < 2) fail_at_line(table.rows[0].line, "only one row; give one per grey value");
-    const size_t fall = find_fall(values, false);
-    if (fall < values.size() && !repair.is_allowed)
-        fail_at_line(table.rows[fall].line,
-                     number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
-                         + " before it, but a response cannot decrease; smooth it, or check the kind of table",
-                     LENSPROF_ERROR_RESPONSE);
-    const size_t lowest = static_cast<size_t>(std::min_element(values.begin(), values.end()) - values.begin());
-    const double smallest = values[lowest];
-    if (curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10) remove_logarithm(values, curve);
-    if (fall < values.size()) make_increasing(values, 0.0, repair);
-    if (curve == LENSPROF_CURVE_INVERSE && values.front() < 0.0)
-        fail_at_line(
-            table.rows[lowest].line,
-            number_text(smallest) + " is below 0, which is not an irradiance; check whether the table is logarithmic",
-            LENSPROF_ERROR_RESPONSE);
-    const double first = values.front(), last = values.back();
-    if (!(last > 0.0 && last > first))
-        fail_at_line(table.rows.back().line,
-                     "the last value is not above the first, or not above 0; give another table",
-                     LENSPROF_ERROR_RESPONSE);
-    for (double &value : values) {
-        if (curve == LENSPROF_CURVE_FORWARD)
-            value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
-        else
-            value /= last;
-    }
-    if (curve != LENSPROF_CURVE_FORWARD) return response_of_irradiances(values);
-    values.back() = 1.0;
-    lensprof_response response;
-    const lensprof_status status =
-        lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size()));
-    if (status != LENSPROF_OK) throw FormatFailure{status, "it is not a response; check the kind of table"};
-    return response;
 }
 
 struct Curves {
@@ -177,7 +142,7 @@ void read_matrices(const std::vector<Table> &tables, Repair &repair, Curves &cur
             fail_at_line(tables[c].rows[0].line,
                          "a matrix without 3 columns: log10, grey value and irradiance; correct it");
         check_index(tables[c], 1);
-        curves.response[c] = read_curve(tables[c], column(tables[c], 2), LENSPROF_CURVE_INVERSE, repair);
+        curves.response[c] = response_of_column(column_of(tables[c], 2), LENSPROF_CURVE_INVERSE, repair);
     }
 }
 
@@ -192,10 +157,47 @@ void read_columns(const CurveText &file, uint32_t curve, Repair &repair, Curves 
     if (skipped && table.rows.size() > 1) check_index(table, 0);
     for (uint32_t c = 0; c < curves.count; c++)
         curves.response[file.blue_first() ? curves.count - 1 - c : c] =
-            read_curve(table, column(table, skipped + c), curve, repair);
+            response_of_column(column_of(table, skipped + c), curve, repair);
 }
 
 }  // namespace
+
+lensprof_response response_of_column(TableColumn column, uint32_t curve, Repair &repair) {
+    std::vector<double> &values = column.values;
+    if (values.size() < 2) fail_at_line(column.lines[0], "only one row; give one per grey value");
+    const size_t fall = find_fall(values, false);
+    if (fall < values.size() && !repair.is_allowed)
+        fail_at_line(column.lines[fall],
+                     number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
+                         + " before it, but a response cannot decrease; smooth it, or check the kind of table",
+                     LENSPROF_ERROR_RESPONSE);
+    const size_t lowest = static_cast<size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+    const double smallest = values[lowest];
+    if (curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10) remove_logarithm(values, curve);
+    if (fall < values.size()) make_increasing(values, 0.0, repair);
+    if (curve == LENSPROF_CURVE_INVERSE && values.front() < 0.0)
+        fail_at_line(
+            column.lines[lowest],
+            number_text(smallest) + " is below 0, which is not an irradiance; check whether the table is logarithmic",
+            LENSPROF_ERROR_RESPONSE);
+    const double first = values.front(), last = values.back();
+    if (!(last > 0.0 && last > first))
+        fail_at_line(column.lines.back(), "the last value is not above the first, or not above 0; give another table",
+                     LENSPROF_ERROR_RESPONSE);
+    for (double &value : values) {
+        if (curve == LENSPROF_CURVE_FORWARD)
+            value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
+        else
+            value /= last;
+    }
+    if (curve != LENSPROF_CURVE_FORWARD) return response_of_irradiances(values);
+    values.back() = 1.0;
+    lensprof_response response;
+    const lensprof_status status =
+        lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size()));
+    if (status != LENSPROF_OK) throw FormatFailure{status, "it is not a response; check the kind of table"};
+    return response;
+}
 
 uint32_t read_curves(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses) {
     const CurveText file(text);

@@ -89,6 +89,34 @@ LENSPROF_MUST_USE lensprof_status lp_curves_write(const lensprof_response *respo
                                                   uint32_t curve, uint32_t rows, void *data, size_t capacity,
                                                   size_t *count, lensprof_error *error);
 
+/* Reads a one-dimensional table of Adobe's cube format (.cube), with a domain of 0 to 1: grey -> light (curve INVERSE)
+ * or light -> grey (FORWARD), rescaled and repaired as in lp_curves_read. Three equal columns are one response.
+ * responses: 3 of them, of which *count are written. Errors (the text names the line): ARGUMENT; UNSUPPORTED for
+ * another curve, another domain and a table in three dimensions; SIZE over 65536 rows or 64 MiB; SYNTAX; RESPONSE;
+ * MEMORY. */
+LENSPROF_MUST_USE lensprof_status lp_cube_read(const void *data, size_t size, uint32_t curve,
+                                               lensprof_response *responses, uint32_t *count, lensprof_error *error);
+
+/* Writes the responses of a profile as `rows` (2 to 65536) rows of three numbers 0 to 1, which round-trip exactly: g at
+ * even steps of grey (curve INVERSE), or f at even steps of light (FORWARD). Output as in base.h. Errors: ARGUMENT;
+ * UNSUPPORTED for another curve; those of lensprof_response_validate; CAPACITY; MEMORY. */
+LENSPROF_MUST_USE lensprof_status lp_cube_write(const lensprof_profile *profile, uint32_t curve, uint32_t rows,
+                                                void *data, size_t capacity, size_t *count, lensprof_error *error);
+
+/* Writes response and falloff of a profile as functions of GLSL (ES 3.00 and 3.30) or WGSL, for 32-bit floats:
+ * lensprof_falloff(position, size), lensprof_to_light(encoded), lensprof_from_light(light) and
+ * lensprof_correct(encoded, position, size). Responses that are not all linear or gamma are tables of 65 to 1021 values
+ * of g at even steps of grey: the fewest with which a corrected value is within 0.3 levels of 255 of f(g(B) / M), for M
+ * of this falloff, or else the most. Output as in base.h. Errors: ARGUMENT for another format; those of
+ * lensprof_profile_validate; UNSUPPORTED for a gain grid; CAPACITY; MEMORY. */
+LENSPROF_MUST_USE lensprof_status lp_shader_write(const lensprof_profile *profile, uint32_t format, void *data,
+                                                  size_t capacity, size_t *count, lensprof_error *error);
+
+/* Writes a profile as a header of C99: its blob (without covariance), and centre, k1, k2 and k3 in single precision.
+ * Output as in base.h. Errors: ARGUMENT; those of lensprof_profile_validate; CAPACITY; MEMORY. */
+LENSPROF_MUST_USE lensprof_status lp_c_header_write(const lensprof_profile *profile, void *data, size_t capacity,
+                                                    size_t *count, lensprof_error *error);
+
 /* Fits the falloff of a map, in a frame of width x height px: one polynomial per channel with a common centre, by least
  * squares of the relative error, and a gain grid if the polynomials leave more than 0.2 %. Sets vignetting and grid of
  * an initialised *profile, removes its covariance and leaves the rest. *worst (may be NULL) receives the largest

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include <lensprof/formats.h>
 
@@ -13,6 +14,16 @@ lensprof_response read_pcalib(std::string_view text, Repair &repair);
 
 // One response or three, at `responses`; returns their number.
 uint32_t read_curves(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses);
+
+// The same of a cube; INVERSE or FORWARD.
+uint32_t read_cube(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses);
+
+// The values of one channel of a table and the lines that they are in.
+struct TableColumn {
+    std::vector<double> values;
+    std::vector<size_t> lines;
+};
+lensprof_response response_of_column(TableColumn column, uint32_t curve, Repair &repair);
 
 void read_radical_responses(std::string_view data, Repair &repair, lensprof_response *responses);
 

@@ -98,7 +98,7 @@ LAYERS = {
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
                 "sampling", "flat", "fields", "deflicker", "rendering", "trial", "online", "api"],
-    "src/formats": ["text", "falloff", "hugin", "", "any"],
+    "src/formats": ["text", "falloff", "code", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/photo": ["base", "pictures", "video", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "clip", "correct", "deflicker", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],

@@ -439,6 +439,10 @@ class Format(IntEnum):
     CURVES = 10
     RADICAL_RESPONSE = 11
     RADICAL_VIGNETTING = 12
+    CUBE = 13
+    GLSL = 14
+    WGSL = 15
+    C = 16
 
 
 class Holds(IntEnum):

@@ -451,7 +451,7 @@ def write_map(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int
 
 class WriteOptions(TypedDict, total=False):
     """How profiles are written. format: Format.AUTO = by the name. frame, tables: as for read_profiles; rows of curves
-    are tables[1]. layout, form: of opcodes. curve: of curves. covariance: of a blob. color_temperature_k: of alsc.
+    and cubes are tables[1]. layout, form: of opcodes. curve: of curves and cubes. covariance: of a blob. color_temperature_k: of alsc.
     camera: of Lensfun's files, gives maker, mount and crop factor. into: a Lensfun database, to which the profiles are
     added. cost_ev: of Lensfun's files, an array of float64 with a number per profile, which receives what the file loses
     of it: the largest error in a corner of the frame relative to its middle, EV."""
@@ -470,14 +470,15 @@ class WriteOptions(TypedDict, total=False):
 
 
 class FormatInfo(NamedTuple):
-    """A format: its name, a description, the content of its files, whether it can be written, and whether it holds
-    several."""
+    """A format: its name, a description, the content of its files, whether it can be written, whether it holds several,
+    and whether it can be read."""
 
     name: str
     about: str
     holds: Holds
     is_written: bool
     is_many: bool
+    is_read: bool
 
 
 def info(format: Format) -> FormatInfo:
@@ -486,7 +487,9 @@ def info(format: Format) -> FormatInfo:
     if not found:
         raise ValueError("AUTO is not a format here; pass another Format")
     info = found.contents
-    return FormatInfo(info.name.decode(), info.about.decode(), Holds(info.holds), bool(info.is_written), bool(info.is_many))
+    written_only = 2  # is_written of C
+    return FormatInfo(info.name.decode(), info.about.decode(), Holds(info.holds), bool(info.is_written), bool(info.is_many),
+                      info.is_written != written_only)
 
 
 def detect(source: Source, name: str = "") -> Format:

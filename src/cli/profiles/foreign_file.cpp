@@ -43,10 +43,15 @@ uint32_t format_of_tags(const std::string &path, const std::string &head) {
 
 }  // namespace
 
-std::string about_foreign(bool written_only) {
+bool is_offered(const ForeignRule &rule, bool to_write) {
+    constexpr uint32_t written_only = 2;  // lensprof_format_info.is_written
+    return to_write ? rule.is_written != 0 : rule.is_written != written_only;
+}
+
+std::string about_foreign(bool to_write) {
     std::string text = "Formats:\n";
     for (uint32_t format = 1; const ForeignRule *rule = lensprof_format_get_info(format); format++)
-        if (rule->is_written || !written_only)
+        if (is_offered(*rule, to_write))
             text += "  " + (std::string(rule->name) + std::string(10, ' ')).substr(0, 10) + rule->about + "\n";
     return text;
 }
@@ -58,9 +63,15 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &fo
     refuse_other_kind(path);
     uint32_t format = format_of_tags(path, head);
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
-    if (format) return rule_of(format);
-    throw Failure(LENSPROF_ERROR_ARGUMENT,
-                  path + ": the format cannot be identified from content or name; give it with --format");
+    if (!format)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      path + ": the format cannot be identified from content or name; give it with --format");
+    const ForeignRule &rule = rule_of(format);
+    if (!is_offered(rule, false))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": " + rule.name
+                                                   + " is supported for export only; export JSON or a blob to read a "
+                                                     "profile again");
+    return rule;
 }
 
 const ForeignRule &format_to_write(const std::string &path, const std::string &format_name) {

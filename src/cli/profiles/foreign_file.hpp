@@ -13,7 +13,8 @@ namespace lensprof {
 
 // A format, as the library describes it.
 using ForeignRule = lensprof_format_info;
-std::string about_foreign(bool written_only);  // for --help: one line per format
+bool is_offered(const ForeignRule &rule, bool to_write);  // whether it is written, or else read
+std::string about_foreign(bool to_write);                 // for --help: one line per format
 
 // Information that files do not contain.
 struct ForeignOptions {

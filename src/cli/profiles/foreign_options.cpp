@@ -7,15 +7,17 @@ Keys declare_foreign(Command &command, ForeignOptions &o, bool is_output) {
     Keys keys = command.expert().keys("--encoding", "what a format depends on but does not state");
     keys.size("frame", o.width, o.height, sides, "size of the pictures, px");
     keys.size("grid", o.columns, o.rows, sides,
-              is_output ? "columns and rows of maps (default: the frame size) and of alsc (default: 16x12)"
-                        : "columns and rows of alsc tables; default 16x12 or 32x32, by their length");
+              is_output
+                  ? "columns and rows of maps (default: the frame size) and of alsc (default: 16x12); rows of curves "
+                    "(default: 256) and cube (default: 1024)"
+                  : "columns and rows of alsc tables; default 16x12 or 32x32, by their length");
     keys.choice(
         "curve", o.curve,
         {{"inverse", LENSPROF_CURVE_INVERSE},
          {"log", LENSPROF_CURVE_LOG},
          {"log10", LENSPROF_CURVE_LOG10},
          {"forward", LENSPROF_CURVE_FORWARD}},
-        "content of a table of curves: inverse (default: grey value to irradiance), log or log10 of that, or forward "
+        "content of a table of curves, or of a cube (inverse or forward): inverse (default: grey value to irradiance), log or log10 of that, or forward "
         "(irradiance to grey value)");
     keys.choice<std::string>(
         "sense", o.sense, {{"attenuation", "attenuation"}, {"gain", "gain"}},
@@ -35,10 +37,10 @@ Keys declare_foreign(Command &command, ForeignOptions &o, bool is_output) {
     return keys;
 }
 
-Choices<std::string> format_choices(bool written_only) {
+Choices<std::string> format_choices(bool to_write) {
     Choices<std::string> choices;
     for (uint32_t format = 1; const ForeignRule *rule = lensprof_format_get_info(format); format++)
-        if (rule->is_written || !written_only) choices.emplace_back(rule->name, rule->name);
+        if (is_offered(*rule, to_write)) choices.emplace_back(rule->name, rule->name);
     return choices;
 }
 

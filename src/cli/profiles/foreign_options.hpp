@@ -10,6 +10,6 @@ namespace lensprof {
 Keys declare_foreign(Command &command, ForeignOptions &options, bool is_output);
 
 // The choices of --format.
-Choices<std::string> format_choices(bool written_only);
+Choices<std::string> format_choices(bool to_write);
 
 }  // namespace lensprof

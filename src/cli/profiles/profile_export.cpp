@@ -95,13 +95,14 @@ void export_blob(const ExportOptions &o, const StoredProfile &stored, Streams &s
 }
 
 bool is_of_response(uint32_t format) {
-    return format == LENSPROF_FORMAT_PCALIB || format == LENSPROF_FORMAT_CURVES
+    return format == LENSPROF_FORMAT_PCALIB || format == LENSPROF_FORMAT_CURVES || format == LENSPROF_FORMAT_CUBE
            || format == LENSPROF_FORMAT_RADICAL_RESPONSE;
 }
 
-// JSON holds all; readers of a DNG subtract the levels that it states before they apply its opcodes.
+// JSON holds all, and so does the blob in a header of C; readers of a DNG subtract the levels that it states before
+// they apply its opcodes.
 void note_omissions(const ForeignRule &rule, const std::vector<StoredProfile> &chosen, Streams &streams) {
-    if (rule.format == LENSPROF_FORMAT_JSON) return;
+    if (rule.format == LENSPROF_FORMAT_JSON || rule.format == LENSPROF_FORMAT_C) return;
     for (const StoredProfile &stored : chosen) {
         const std::string name = "profile " + std::to_string(stored.id);
         const std::string levels = note_of_levels(*stored.profile, name),

@@ -32,6 +32,7 @@ const char *ending_of(const ForeignRule &rule) {
     case LENSPROF_FORMAT_ALSC: return "json";
     case LENSPROF_FORMAT_PCALIB: return "txt";
     case LENSPROF_FORMAT_CURVES: return "csv";
+    case LENSPROF_FORMAT_C: return "h";
     default: return rule.name;
     }
 }

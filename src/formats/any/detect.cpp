@@ -28,7 +28,13 @@ constexpr lensprof_format_info kFormats[] = {
     {LENSPROF_FORMAT_CURVES, LENSPROF_HOLDS_RESPONSE, 1, 0, "curves",
      "table of OpenCV, AliceVision, pfstools (.csv, .m): response"},
     {LENSPROF_FORMAT_RADICAL_RESPONSE, LENSPROF_HOLDS_RESPONSE, 1, 0, "crf", "radical (.crf): response"},
-    {LENSPROF_FORMAT_RADICAL_VIGNETTING, LENSPROF_HOLDS_FALLOFF, 1, 0, "vgn", "radical (.vgn): falloff"}};
+    {LENSPROF_FORMAT_RADICAL_VIGNETTING, LENSPROF_HOLDS_FALLOFF, 1, 0, "vgn", "radical (.vgn): falloff"},
+    {LENSPROF_FORMAT_CUBE, LENSPROF_HOLDS_RESPONSE, 1, 0, "cube",
+     "one-dimensional table of Adobe, Resolve, FFmpeg (.cube): response"},
+    {LENSPROF_FORMAT_GLSL, LENSPROF_HOLDS_PROFILES, 2, 0, "glsl", "functions for OpenGL, WebGL (.glsl): one profile"},
+    {LENSPROF_FORMAT_WGSL, LENSPROF_HOLDS_PROFILES, 2, 0, "wgsl", "functions for WebGPU (.wgsl): one profile"},
+    {LENSPROF_FORMAT_C, LENSPROF_HOLDS_PROFILES, 2, 0, "c",
+     "header of C for firmware, with the blob (.h): one profile"}};
 
 struct Ending {
     std::string_view end;
@@ -47,7 +53,11 @@ constexpr Ending kEndings[] = {{"xml", LENSPROF_FORMAT_LENSFUN},
                                {"csv", LENSPROF_FORMAT_CURVES},
                                {"m", LENSPROF_FORMAT_CURVES},
                                {"crf", LENSPROF_FORMAT_RADICAL_RESPONSE},
-                               {"vgn", LENSPROF_FORMAT_RADICAL_VIGNETTING}};
+                               {"vgn", LENSPROF_FORMAT_RADICAL_VIGNETTING},
+                               {"cube", LENSPROF_FORMAT_CUBE},
+                               {"glsl", LENSPROF_FORMAT_GLSL},
+                               {"wgsl", LENSPROF_FORMAT_WGSL},
+                               {"h", LENSPROF_FORMAT_C}};
 
 std::string ending_of(std::string_view name) {
     const size_t dot = name.rfind('.'), slash = name.rfind('/');
@@ -59,6 +69,14 @@ std::string ending_of(std::string_view name) {
 
 bool begins(std::string_view data, std::string_view with) { return data.substr(0, with.size()) == with; }
 bool has(std::string_view data, std::string_view part) { return data.find(part) != std::string_view::npos; }
+
+// A line that begins with a word.
+bool has_line(std::string_view data, std::string_view word) {
+    LineReader lines(data);
+    while (lines.next())
+        if (begins(lines.line, word)) return true;
+    return false;
+}
 
 bool is_tiff(std::string_view data) {
     using namespace std::string_view_literals;
@@ -82,6 +100,7 @@ uint32_t format_of_content(std::string_view head, std::string_view name) {
     if (is_tiff(head)) return ending_of(name) == "dng" ? LENSPROF_FORMAT_DNG_OPCODES : LENSPROF_FORMAT_MAP;
     if (ending_of(name) == "lcp") return LENSPROF_FORMAT_LCP;
     if (is_jpeg(head) || has(head, "<x:xmpmeta") || has(head, "<?xpacket")) return LENSPROF_FORMAT_DRONE_XMP;
+    if (has_line(head, "LUT_1D_SIZE") || has_line(head, "LUT_3D_SIZE")) return LENSPROF_FORMAT_CUBE;
     return has(head, "# name:") ? LENSPROF_FORMAT_CURVES : LENSPROF_FORMAT_AUTO;
 }
 

@@ -7,6 +7,8 @@
 
 namespace lensprof {
 
+constexpr uint32_t kWrittenOnly = 2;  // is_written of formats that are not read
+
 // By the ending of a name; AUTO where that is of none.
 uint32_t format_of_name(std::string_view name);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kFirstExport = LP_END_OF(lensprof_export_options, name);
 constexpr size_t kMaxBytes = size_t{64} << 20;  // as lensprof_import
 constexpr double kNearEnough = 0.005;           // error of a radial opcode that is taken
-constexpr uint32_t kColumns = 16, kRows = 12, kCurveRows = 256;
+constexpr uint32_t kColumns = 16, kRows = 12, kCurveRows = 256, kCubeRows = 1024;
 
 // Where a file goes.
 struct Output {
@@ -58,6 +58,11 @@ lensprof_status write_one(const lensprof_profile &p, const lensprof_export_optio
     case LENSPROF_FORMAT_CURVES:
         return lp_curves_write(p.response, p.responses, o.curve, o.rows ? o.rows : kCurveRows, out.data, out.capacity,
                                out.count, out.error);
+    case LENSPROF_FORMAT_CUBE:
+        return lp_cube_write(&p, o.curve, o.rows ? o.rows : kCubeRows, out.data, out.capacity, out.count, out.error);
+    case LENSPROF_FORMAT_GLSL:
+    case LENSPROF_FORMAT_WGSL: return lp_shader_write(&p, o.format, out.data, out.capacity, out.count, out.error);
+    case LENSPROF_FORMAT_C: return lp_c_header_write(&p, out.data, out.capacity, out.count, out.error);
     case LENSPROF_FORMAT_RADICAL_RESPONSE:
         return lp_radical_response_write(p.response, p.responses, out.data, out.capacity, out.count, out.error);
     case LENSPROF_FORMAT_RADICAL_VIGNETTING:

@@ -71,6 +71,9 @@ void read_response(const Input &in, Part &part) {
             throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "the kind of curve is unknown; see lensprof_curve"};
         profile.responses = read_curves(data, in.options.curve, part.repair, profile.response);
         break;
+    case LENSPROF_FORMAT_CUBE:
+        profile.responses = read_cube(data, in.options.curve, part.repair, profile.response);
+        break;
     default: profile.responses = 3; read_radical_responses(data, part.repair, profile.response);
     }
     char text[sizeof profile.provenance.doubt];
@@ -210,8 +213,12 @@ lensprof_status check_input(Input &in, lensprof_error *error) {
         if (!format)
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
                                 "neither its content nor its name identifies its format; specify the format"};
-        if (!lensprof_format_get_info(format))
-            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "unknown format; pass a lensprof_format"};
+        const lensprof_format_info *info = lensprof_format_get_info(format);
+        if (!info) throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "unknown format; pass a lensprof_format"};
+        if (info->is_written == kWrittenOnly)
+            throw FormatFailure{
+                LENSPROF_ERROR_UNSUPPORTED,
+                std::string(info->name) + " is written only; export JSON or a blob to read a profile again"};
         if (const char *container = container_of(format, data))
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, container};
     });

@@ -1017,6 +1017,10 @@ pub enum Format {
     Curves = 10,
     RadicalResponse = 11,
     RadicalVignetting = 12,
+    Cube = 13,
+    Glsl = 14,
+    Wgsl = 15,
+    C = 16,
 }
 
 impl Format {
@@ -1036,6 +1040,10 @@ impl Format {
             10 => Some(Self::Curves),
             11 => Some(Self::RadicalResponse),
             12 => Some(Self::RadicalVignetting),
+            13 => Some(Self::Cube),
+            14 => Some(Self::Glsl),
+            15 => Some(Self::Wgsl),
+            16 => Some(Self::C),
             _ => None,
         }
     }

@@ -927,7 +927,11 @@ public final class Abi {
         PCALIB(9),
         CURVES(10),
         RADICAL_RESPONSE(11),
-        RADICAL_VIGNETTING(12);
+        RADICAL_VIGNETTING(12),
+        CUBE(13),
+        GLSL(14),
+        WGSL(15),
+        C(16);
 
         public final int value;
 
