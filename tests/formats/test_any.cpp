@@ -20,6 +20,7 @@ struct Sample {
     bool by_content;
     size_t entries;
 };
+constexpr uint32_t kLast = LENSPROF_FORMAT_C;
 constexpr Sample kSamples[] = {
     {LENSPROF_FORMAT_LENSFUN, "lensfun/version2.xml", "a.xml", true, 0},
     {LENSPROF_FORMAT_LENSFUN, "lensfun/version1.xml", "a.xml", true, 0},
@@ -38,6 +39,8 @@ constexpr Sample kSamples[] = {
     {LENSPROF_FORMAT_CURVES, "curves/pfs.m", "a.m", true, 1},
     {LENSPROF_FORMAT_RADICAL_RESPONSE, "maps/response.crf", "a.crf", false, 1},
     {LENSPROF_FORMAT_RADICAL_VIGNETTING, "maps/one_center.vgn", "a.vgn", true, 1},
+    {LENSPROF_FORMAT_CUBE, "cube/inverse.cube", "a.cube", true, 1},
+    {LENSPROF_FORMAT_CUBE, "cube/resolve.cube", "a.cube", true, 1},
 };
 
 lensprof_import_options import_options(uint32_t format = LENSPROF_FORMAT_AUTO, const char *name = nullptr) {
@@ -73,12 +76,14 @@ Found import(const std::string &bytes, const lensprof_import_options *options) {
 
 void test_formats_are_known(void **) {
     assert_null(lensprof_format_get_info(LENSPROF_FORMAT_AUTO));
-    assert_null(lensprof_format_get_info(LENSPROF_FORMAT_RADICAL_VIGNETTING + 1));
-    for (uint32_t format = 1; format <= LENSPROF_FORMAT_RADICAL_VIGNETTING; format++) {
+    assert_null(lensprof_format_get_info(kLast + 1));
+    for (uint32_t format = 1; format <= kLast; format++) {
         const lensprof_format_info *info = lensprof_format_get_info(format);
         assert_int_equal(info->format, format);
         assert_true(*info->name && strlen(info->about) > 10 && info->holds <= LENSPROF_HOLDS_FALLOFF);
         assert_true(!info->is_many || info->holds == LENSPROF_HOLDS_PROFILES);
+        assert_int_equal(info->is_written == 2, format >= LENSPROF_FORMAT_GLSL);
+        assert_true(info->is_written <= 2);
     }
 }
 
@@ -122,6 +127,10 @@ void test_names_alone(void **) {
                                                        {"a.m", LENSPROF_FORMAT_CURVES},
                                                        {"a.CRF", LENSPROF_FORMAT_RADICAL_RESPONSE},
                                                        {"a.vgn", LENSPROF_FORMAT_RADICAL_VIGNETTING},
+                                                       {"a.cube", LENSPROF_FORMAT_CUBE},
+                                                       {"a.glsl", LENSPROF_FORMAT_GLSL},
+                                                       {"a.wgsl", LENSPROF_FORMAT_WGSL},
+                                                       {"a.H", LENSPROF_FORMAT_C},
                                                        {"a", LENSPROF_FORMAT_AUTO},
                                                        {"", LENSPROF_FORMAT_AUTO},
                                                        {"a.jpeg2000", LENSPROF_FORMAT_AUTO},
@@ -181,8 +190,8 @@ void test_same_as_by_hand(void **) {
 }
 
 void test_wrong_content_under_a_right_name(void **) {
-    for (const char *name :
-         {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.xmp", "a.txt", "a.csv", "a.crf", "a.vgn"})
+    for (const char *name : {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.xmp", "a.txt", "a.csv", "a.crf", "a.vgn",
+                             "a.cube", "a.glsl", "a.wgsl", "a.h"})
         for (const char *content : {"These are not the numbers you want.", "<html><body/></html>", "\0\0\0\0"}) {
             const auto options = import_options(LENSPROF_FORMAT_AUTO, name);
             const std::string bytes(content, *content ? strlen(content) : 4);
@@ -206,12 +215,15 @@ void refused(const std::string &bytes, lensprof_import_options options, lensprof
 }
 
 void test_empty_large_and_unknown(void **) {
-    for (uint32_t format = 0; format <= LENSPROF_FORMAT_RADICAL_VIGNETTING; format++)
+    for (uint32_t format = 0; format <= kLast; format++)
         if (format != LENSPROF_FORMAT_MAP)
             refused("", import_options(format, "a.csv"), LENSPROF_ERROR_SYNTAX, "is empty");
     refused("hello", import_options(), LENSPROF_ERROR_UNSUPPORTED, "specify the format");
     refused("hello", import_options(LENSPROF_FORMAT_AUTO, "a.doc"), LENSPROF_ERROR_UNSUPPORTED, "specify the format");
-    refused("hello", import_options(13), LENSPROF_ERROR_ARGUMENT, "unknown format");
+    refused("hello", import_options(kLast + 1), LENSPROF_ERROR_ARGUMENT, "unknown format");
+    for (const uint32_t format : {LENSPROF_FORMAT_GLSL, LENSPROF_FORMAT_WGSL, LENSPROF_FORMAT_C})
+        refused("hello", import_options(format), LENSPROF_ERROR_UNSUPPORTED, "export JSON or a blob");
+    refused("hello", import_options(LENSPROF_FORMAT_AUTO, "a.h"), LENSPROF_ERROR_UNSUPPORTED, "c is written only");
     lensprof_error error{};
     Found found;
     const char byte = '{';  // only one byte is accessible: a file that is too large is not read
@@ -316,7 +328,8 @@ std::unique_ptr<lensprof_profile> lens(const char *name = "Acme 50mm") {
 // What is written under a name is read back under this name.
 void test_there_and_back(void **) {
     const auto p = lens();
-    for (const char *name : {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.txt", "a.csv", "a.crf", "a.vgn"}) {
+    for (const char *name :
+         {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.txt", "a.csv", "a.crf", "a.vgn", "a.cube"}) {
         const std::string bytes = exported({p.get()}, export_options(LENSPROF_FORMAT_AUTO, name));
         auto options = import_options(LENSPROF_FORMAT_AUTO, name);
         options.width = 600, options.height = 400;
@@ -408,7 +421,7 @@ void test_export_refuses(void **) {
     refuses({p.get()}, options, LENSPROF_ERROR_ARGUMENT, "flags");
     options.struct_size = 4;
     refuses({p.get()}, options, LENSPROF_ERROR_STRUCT_SIZE, "struct_size");
-    for (uint32_t format = LENSPROF_FORMAT_AUTO + 1; format <= LENSPROF_FORMAT_RADICAL_VIGNETTING; format++) {
+    for (uint32_t format = LENSPROF_FORMAT_AUTO + 1; format <= kLast; format++) {
         const auto broken = std::make_unique<lensprof_profile>(*p);
         broken->responses = 2000000000;
         auto of_broken = export_options(format);

@@ -14,6 +14,7 @@ const std::vector<std::string> kWords = {"<lensdatabase version=\"2\">",
                                          "{\"rpi.alsc\":",
                                          "luminance_lut",
                                          "# name: ",
+                                         "LUT_1D_SIZE 2\n",
                                          "\x89PNG",
                                          "\xFF\xD8",
                                          "II*",
@@ -25,8 +26,8 @@ const std::vector<std::string> kWords = {"<lensdatabase version=\"2\">",
                                          "{",
                                          "}",
                                          "\xFF"};
-const char *const kNames[] = {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.xmp",
-                              "a.txt", "a.csv", "a.crf",  "a.vgn",  ""};
+const char *const kNames[] = {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.xmp", "a.txt",
+                              "a.csv", "a.crf", "a.vgn",  "a.cube", "a.h",   ""};
 
 lensprof_status visit_any(void *user, const lensprof_import_entry *entry) {
     const lensprof_status status = visit(user, entry);

@@ -302,7 +302,7 @@ class AnyFormat(unittest.TestCase):
 
     def test_refused(self):
         self.assertEqual(formats.detect(b"hello"), formats.Format.AUTO)
-        self.assertEqual(formats.info(formats.Format.DRONE_XMP)[2:], (formats.Holds.FALLOFF, False, False))
+        self.assertEqual(formats.info(formats.Format.DRONE_XMP)[2:], (formats.Holds.FALLOFF, False, False, True))
         with self.assertRaises(ValueError):
             formats.info(formats.Format.AUTO)
         for data, name, words in ((b"hello", "", "specify the format"), (b"", "a.csv", "is empty"),
