@@ -17,8 +17,8 @@ Keys declare_foreign(Command &command, ForeignOptions &o, bool is_output) {
          {"log", LENSPROF_CURVE_LOG},
          {"log10", LENSPROF_CURVE_LOG10},
          {"forward", LENSPROF_CURVE_FORWARD}},
-        "content of a table of curves, or of a cube (inverse or forward): inverse (default: grey value to irradiance), log or log10 of that, or forward "
-        "(irradiance to grey value)");
+        "content of a table of curves, or of a cube (inverse or forward): inverse (default: grey value to irradiance), "
+        "log or log10 of that, or forward (irradiance to grey value)");
     keys.choice<std::string>(
         "sense", o.sense, {{"attenuation", "attenuation"}, {"gain", "gain"}},
         "meaning of maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)");
