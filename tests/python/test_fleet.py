@@ -3,6 +3,7 @@ fsspec. Needs dask.distributed, fsspec and pyarrow; skipped without them."""
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -67,7 +68,17 @@ class Fleet(unittest.TestCase):
 
     def test_names_differ_where_folders_have_the_same_name(self):
         self.assertNotEqual(fleet.name_of("/a/walk"), fleet.name_of("/b/walk"))
+        self.assertEqual(fleet.name_of("s3://bucket/a/walk/"), fleet.name_of("s3://bucket/a/walk"))
         self.assertEqual(fleet.name_of("s3://bucket/a/walk/")[:5], "walk-")
+
+    def test_damaged_row_is_done_again(self):
+        output = self.folder / "damaged"
+        shutil.copytree(self.plain, output)
+        row = output / "rows" / f"{self.rows[0]['name']}.json"
+        for content in ("{", "[]", "{}"):
+            row.write_text(content)
+            self.assertEqual(settled(fleet.calibrate_sequence(self.sequences[0], str(output))), settled(self.rows[0]))
+            self.assertEqual(json.loads(row.read_text())["state"], "done")
 
     def test_what_has_a_row_is_not_done_again(self):
         """But what failed is."""

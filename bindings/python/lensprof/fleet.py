@@ -31,8 +31,8 @@ STATES = ("done", "not usable", "failed")
 
 def name_of(address: str) -> str:
     """A name for the files of a sequence, which no other address has: its last part, and a hash of all of it."""
-    last = address.rstrip("/").rsplit("/", 1)[-1]
-    return f"{last}-{hashlib.sha256(address.encode()).hexdigest()[:12]}"
+    address = address.rstrip("/")
+    return f"{address.rsplit('/', 1)[-1]}-{hashlib.sha256(address.encode()).hexdigest()[:12]}"
 
 
 def _file_system(address: str) -> tuple[Any, str]:
@@ -83,10 +83,14 @@ def _put_row(row: Row, address: str) -> None:
 
 
 def _written_row(address: str) -> Optional[Row]:
+    """None also if something else wrote there, or damaged it: then the sequence is done again."""
     system, path = _file_system(address)
     if not system.exists(path):
         return None
-    return dict(json.loads(system.cat_file(path)))
+    with contextlib.suppress(ValueError):
+        row = json.loads(system.cat_file(path))
+        return row if isinstance(row, dict) and row.get("state") in STATES else None
+    return None
 
 
 def _reported(row: Row, job: Callable[[Row], None]) -> Row:
