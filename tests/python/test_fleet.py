@@ -18,9 +18,9 @@ try:
     import fsspec
     import pyarrow.parquet
     from dask.distributed import Client, LocalCluster
-    from lensprof import fleet
 except ImportError as error:
     missing = f"{error}; pip install lensprof[fleet]"
+from lensprof import fleet
 
 PROGRAM = os.environ["LENSPROF_PROGRAM"]
 

@@ -56,6 +56,8 @@ def _find() -> ctypes.CDLL:
 
 def _check_version(library: ctypes.CDLL) -> None:
     """While the major version is 0, structures may change with the minor one."""
+    if not hasattr(library, "lensprof_version"):
+        raise ImportError(f"{library._name}: is not the lensprof library; install lensprof or correct LENSPROF_LIBRARY")
     library.lensprof_version.restype = ctypes.c_char_p
     version = library.lensprof_version().decode()
     if version.split(".")[:2] != _abi.VERSION.split(".")[:2]:

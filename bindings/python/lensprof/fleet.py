@@ -190,7 +190,8 @@ def merge_stores(stores: Sequence[str], into: str) -> tuple[int, int]:
 def stores_of(output: str) -> list[str]:
     """The databases that calibrate_sequence wrote."""
     system, path = _file_system(f"{output.rstrip('/')}/stores")
-    return sorted(system.unstrip_protocol(file) for file in system.glob(f"{path}/*.db"))
+    files = system.ls(path, detail=False) if system.isdir(path) else []
+    return sorted(system.unstrip_protocol(file) for file in files if file.endswith(".db"))
 
 
 def write_table(rows: Sequence[Row], address: str) -> None:
