@@ -109,10 +109,14 @@ private:
 
 }  // namespace
 
-uint32_t read_cube(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses) {
+void check_cube_curve(uint32_t curve) {
     if (curve != LENSPROF_CURVE_INVERSE && curve != LENSPROF_CURVE_FORWARD)
         throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
                             "a cube holds light or grey values, not logarithms; choose the inverse or forward curve"};
+}
+
+uint32_t read_cube(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses) {
+    check_cube_curve(curve);
     const CubeText cube(text);
     const std::array<TableColumn, 3> &columns = cube.columns();
     const bool is_one = columns[0].values == columns[1].values && columns[0].values == columns[2].values;

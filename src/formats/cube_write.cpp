@@ -2,20 +2,13 @@
 #include "formats/each_format.h"
 
 #include "formats/code/code_text.hpp"
-#include "formats/falloff/curve_table.hpp"
+#include "formats/responses.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr double kLeast = 1e-40;  // smaller numbers become 0, so that a row is shorter than the format's 250 characters
 constexpr size_t kTitle = 200;    // bytes
-
-std::vector<double> values_of(const lensprof_response &response, uint32_t curve, uint32_t rows) {
-    if (curve == LENSPROF_CURVE_INVERSE) return irradiances_of(response, rows);
-    std::vector<double> values(rows);
-    for (uint32_t j = 0; j < rows; j++) values[j] = lensprof_response_eval(&response, j / (rows - 1.0), nullptr);
-    return values;
-}
 
 // A title is ASCII without quotes.
 std::string title_of(const lensprof_profile_key &key, bool is_inverse) {
@@ -28,13 +21,12 @@ std::string title_of(const lensprof_profile_key &key, bool is_inverse) {
 }
 
 std::string cube_text(const lensprof_profile &profile, uint32_t curve, uint32_t rows) {
-    if (curve != LENSPROF_CURVE_INVERSE && curve != LENSPROF_CURVE_FORWARD)
-        throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
-                            "a cube holds light or grey values, not logarithms; choose the inverse or forward curve"};
+    check_cube_curve(curve);
     std::vector<std::vector<double>> columns;
     for (uint32_t c = 0; c < profile.responses; c++) {
         check_response(profile.response[c], "response " + std::to_string(c));
-        columns.push_back(values_of(profile.response[c], curve, rows));
+        columns.push_back(curve == LENSPROF_CURVE_INVERSE ? irradiances_of(profile.response[c], rows)
+                                                          : greys_of(profile.response[c], rows));
     }
     std::string text = "TITLE \"" + title_of(profile.key, curve == LENSPROF_CURVE_INVERSE) + "\"\nLUT_1D_SIZE "
                        + std::to_string(rows) + "\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n";

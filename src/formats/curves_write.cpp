@@ -11,11 +11,7 @@ namespace lensprof {
 namespace {
 
 std::vector<double> column(const lensprof_response &response, uint32_t curve, uint32_t rows) {
-    if (curve == LENSPROF_CURVE_FORWARD) {
-        std::vector<double> values(rows);
-        for (uint32_t j = 0; j < rows; j++) values[j] = lensprof_response_eval(&response, j / (rows - 1.0), nullptr);
-        return values;
-    }
+    if (curve == LENSPROF_CURVE_FORWARD) return greys_of(response, rows);
     std::vector<double> values = irradiances_of(response, rows);
     for (double &value : values) {
         if (curve == LENSPROF_CURVE_LOG) value = std::log(std::max(value, kDarkest));

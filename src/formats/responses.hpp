@@ -15,7 +15,8 @@ lensprof_response read_pcalib(std::string_view text, Repair &repair);
 // One response or three, at `responses`; returns their number.
 uint32_t read_curves(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses);
 
-// The same of a cube; INVERSE or FORWARD.
+// The same of a cube, which holds the curve INVERSE or FORWARD; others are refused.
+void check_cube_curve(uint32_t curve);
 uint32_t read_cube(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses);
 
 // The values of one channel of a table and the lines that they are in.

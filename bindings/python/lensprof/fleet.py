@@ -35,6 +35,16 @@ def name_of(address: str) -> str:
     return f"{address.rsplit('/', 1)[-1]}-{hashlib.sha256(address.encode()).hexdigest()[:12]}"
 
 
+def _below(folder: str, name: str) -> str:
+    return f"{folder.rstrip('/')}/{name}"
+
+
+def _copy_name(picture: str) -> str:
+    """The name of a picture with a hash of its address before its ending, if it has one."""
+    stem, dot, ending = picture.rsplit("/", 1)[-1].rpartition(".")
+    return f"{stem}-{name_of(picture)[-12:]}.{ending}" if dot else name_of(picture)
+
+
 def _file_system(address: str) -> tuple[Any, str]:
     import fsspec  # type: ignore[import,unused-ignore]
 
@@ -111,7 +121,7 @@ def calibrate_sequence(sequence: str, output: str, **options: Any) -> Row:
     returns that row: sequence, name, state (done, not usable, failed), error, images, profiles, corner, findings,
     seconds. If the row exists, it is returned."""
     name = name_of(sequence)
-    address = f"{output.rstrip('/')}/rows/{name}.json"
+    address = _below(output, f"rows/{name}.json")
     written = _written_row(address)
     if written is not None and written["state"] != "failed":
         return written
@@ -146,8 +156,8 @@ def _put_results(calibration: Calibration, name: str, output: str, work: str) ->
         with Store(database, StoreMode.CREATE) as store:
             for profile in calibration.profiles:
                 store.put(profile)
-        put_file(database, f"{output.rstrip('/')}/stores/{name}.db")
-    put_file(exposures, f"{output.rstrip('/')}/exposures/{name}.json")
+        put_file(database, _below(output, f"stores/{name}.db"))
+    put_file(exposures, _below(output, f"exposures/{name}.json"))
 
 
 def correct_pictures(pictures: Sequence[str], output: str, database: str, **options: Any) -> list[Row]:
@@ -157,8 +167,7 @@ def correct_pictures(pictures: Sequence[str], output: str, database: str, **opti
     rows = []
     with local_copy(database) as profiles, tempfile.TemporaryDirectory(prefix="lensprof-") as work:
         for picture in pictures:
-            stem, dot, ending = picture.rsplit("/", 1)[-1].rpartition(".")
-            copy = f"{output.rstrip('/')}/{name_of(picture) if not dot else f'{stem}-{name_of(picture)[-12:]}.{ending}'}"
+            copy = _below(output, _copy_name(picture))
             row: Row = {"picture": picture, "copy": copy, "state": "done", "error": ""}
 
             def job(row: Row, picture: str = picture, copy: str = copy) -> None:
@@ -189,7 +198,7 @@ def merge_stores(stores: Sequence[str], into: str) -> tuple[int, int]:
 
 def stores_of(output: str) -> list[str]:
     """The databases that calibrate_sequence wrote."""
-    system, path = _file_system(f"{output.rstrip('/')}/stores")
+    system, path = _file_system(_below(output, "stores"))
     files = system.ls(path, detail=False) if system.isdir(path) else []
     return sorted(system.unstrip_protocol(file) for file in files if file.endswith(".db"))
 
@@ -211,11 +220,11 @@ def calibrate_sequences(sequences: Sequence[str], output: str, client: Any, **op
     futures = client.map(calibrate_sequence, list(sequences), output=output, pure=False, retries=2, **options)
     rows = [_row_of(future, {"sequence": sequence, "name": name_of(sequence), "images": 0, "profiles": 0,
                              "corner": None, "findings": ""}) for future, sequence in zip(futures, sequences)]
-    write_table(rows, f"{output.rstrip('/')}/calibrations.parquet")
+    write_table(rows, _below(output, "calibrations.parquet"))
     with tempfile.TemporaryDirectory(prefix="lensprof-") as work:
         whole = os.path.join(work, "profiles.db")
         merge_stores(stores_of(output), whole)
-        put_file(whole, f"{output.rstrip('/')}/profiles.db")
+        put_file(whole, _below(output, "profiles.db"))
     return rows
 
 
@@ -228,7 +237,7 @@ def correct_all(pictures: Sequence[str], output: str, database: str, client: Any
     for future, part in zip(futures, batches):
         result = _row_of(future, {})
         rows += result if isinstance(result, list) else [{"picture": picture, "copy": "", **result} for picture in part]
-    write_table(rows, f"{output.rstrip('/')}/corrections.parquet")
+    write_table(rows, _below(output, "corrections.parquet"))
     return rows
 
 

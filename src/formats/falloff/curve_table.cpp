@@ -85,6 +85,13 @@ std::vector<double> irradiances_of(const lensprof_response &response, size_t cou
     return values;
 }
 
+std::vector<double> greys_of(const lensprof_response &response, size_t count) {
+    std::vector<double> values(count);
+    for (size_t i = 0; i < count; i++)
+        values[i] = lensprof_response_eval(&response, static_cast<double>(i) / static_cast<double>(count - 1), nullptr);
+    return values;
+}
+
 void check_response(const lensprof_response &response, const std::string &item) {
     const lensprof_status status = lensprof_response_validate(&response);
     if (status != LENSPROF_OK)

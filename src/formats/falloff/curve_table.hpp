@@ -35,6 +35,9 @@ lensprof_response response_of_irradiances(const std::vector<double> &irradiances
 // Irradiances 0..1 of `count` evenly spaced grey values.
 std::vector<double> irradiances_of(const lensprof_response &response, size_t count);
 
+// Grey values 0..1 of `count` evenly spaced irradiances.
+std::vector<double> greys_of(const lensprof_response &response, size_t count);
+
 // Throws, with the status of lensprof_response_validate, if it is not a response. what: "response 1".
 void check_response(const lensprof_response &response, const std::string &item);
 

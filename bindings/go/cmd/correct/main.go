@@ -49,12 +49,16 @@ func correctTile(arguments []string) error {
 	return err
 }
 
-func correctFrame(arguments []string) error {
-	blob, err := os.ReadFile(arguments[0])
+func readProfile(path string) (*lensprof.Profile, error) {
+	blob, err := os.ReadFile(path)
 	if err != nil {
-		return err
+		return nil, err
 	}
-	profile, err := lensprof.Unpack(blob)
+	return lensprof.Unpack(blob)
+}
+
+func correctFrame(arguments []string) error {
+	profile, err := readProfile(arguments[0])
 	if err != nil {
 		return err
 	}
@@ -82,11 +86,7 @@ func correctFrame(arguments []string) error {
 }
 
 func repack(arguments []string) error {
-	blob, err := os.ReadFile(arguments[0])
-	if err != nil {
-		return err
-	}
-	profile, err := lensprof.Unpack(blob)
+	profile, err := readProfile(arguments[0])
 	if err != nil {
 		return err
 	}
