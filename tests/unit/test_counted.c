@@ -48,6 +48,9 @@ BYTES(json_write, lp_json_write(profiles, 1, b, capacity, count, error))
 BYTES(lcp_write, lp_lcp_write(profiles, 1, 0, 0, b, capacity, count, error))
 BYTES(pcalib_write, lp_pcalib_write(&here.linear, b, capacity, count, error))
 BYTES(curves_write, lp_curves_write(&here.linear, 1, 0, 16, b, capacity, count, error))
+BYTES(cube_write, lp_cube_write(&here.profile, LENSPROF_CURVE_INVERSE, 16, b, capacity, count, error))
+BYTES(shader_write, lp_shader_write(&here.profile, LENSPROF_FORMAT_GLSL, b, capacity, count, error))
+BYTES(c_header_write, lp_c_header_write(&here.profile, b, capacity, count, error))
 BYTES(alsc_write, lp_alsc_write(&here.profile, 5000, 4, 3, WIDTH, HEIGHT, b, capacity, count, error))
 BYTES(radical_response_write, lp_radical_response_write(&here.linear, 1, b, capacity, count, error))
 BYTES(radical_vignetting_write, lp_radical_vignetting_write(&here.profile, WIDTH, HEIGHT, b, capacity, count, error))
@@ -87,6 +90,9 @@ static const struct {
     ROW(lcp_write, 1, TEXT),
     ROW(pcalib_write, 1, TEXT),
     ROW(curves_write, 1, TEXT),
+    ROW(cube_write, 1, TEXT),
+    ROW(shader_write, 1, TEXT),
+    ROW(c_header_write, 1, TEXT),
     ROW(alsc_write, 1, TEXT),
     ROW(radical_response_write, 1, OTHERS),
     ROW(radical_vignetting_write, 1, OTHERS),
