@@ -33,7 +33,7 @@ C_LIBRARY = FREESTANDING | {
     "time.h",
 }
 C_ARITHMETIC = C_LIBRARY - {"locale.h", "setjmp.h", "signal.h", "time.h"}
-POSIX = {"fcntl.h", "fnmatch.h", "unistd.h", "sys/*"}
+SYSTEM = {"fcntl.h", "fnmatch.h", "io.h", "psapi.h", "unistd.h", "windows.h", "sys/*"}
 INTRINSICS = {"immintrin.h", "smmintrin.h", "arm_neon.h", "cpuid.h"}
 CPP_LIBRARY = {"<c++>"}  # every standard C++ header: a name without a dot
 CPP_OUTSIDE = {
@@ -82,12 +82,12 @@ LAYERS = {
         FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core", "falloff"], CPP_OUTSIDE
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
-    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/chained.hpp",
+    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/chained.hpp",
                         "fit/base/joined_sets.hpp", "fit/base/location.hpp",
                         "fit/base/mixed_bits.hpp", "fit/base/quantile.hpp", "fit/base/track_pairs.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
-        C_LIBRARY | CPP_LIBRARY | POSIX | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},
+        C_LIBRARY | CPP_LIBRARY | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},
         ["photo", "threads", "fit/base/joined_sets.hpp", "fit/base/mixed_bits.hpp"],
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
@@ -100,12 +100,13 @@ ROOMS = {
                 "sampling", "flat", "fields", "deflicker", "rendering", "trial", "online", "api"],
     "src/formats": ["text", "falloff", "code", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "video", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "clip", "correct", "deflicker", "folder", "api"],
+    "src/photo": ["system", "base", "pictures", "video", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "clip", "correct", "deflicker", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
 # Headers that only a single room may use.
 ROOM_HEADERS = {
+    "src/photo/system": SYSTEM,
     "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
     "src/photo/registration": {"Eigen/*", "opencv2/*", "immintrin.h"},  # nearest_features.cpp
     "src/photo/reconstruction": {"sqlite3.h"},
@@ -288,10 +289,11 @@ GOOD = {
     "src/falloff/low.hpp": "#include <Eigen/Core>\n#include <lensprof/profile.h>\n",
     "src/formats/pto.cpp": '#include <string>\n#include <lensprof/fit.h>\n#include "falloff/low.hpp"\n',
     "src/store/file/store.c": "#include <sqlite3.h>\n#include <lensprof/store.h>\n// #include <fine.h>\n",
-    "src/cli/program/run.cpp": '#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n#include "cli/program/run.hpp"\n'
+    "src/cli/program/run.cpp": '#include <CLI/CLI.hpp>\n#include "cli/program/run.hpp"\n'
                                '#include "threads/loop.hpp"\n',
     "src/cli/program/run.hpp": '#include <lensprof/lensprof.h>\n#include "photo/base/events.hpp"\n',
     "src/photo/base/events.hpp": "#include <lensprof/reason.h>\n",
+    "src/photo/system/files.cpp": "#include <sys/stat.h>\n#include <windows.h>\n",
     "src/photo/pictures/picture.cpp": '#include <png.h>\n#include "photo/base/events.hpp"\n#include "threads/loop.hpp"\n',
     "examples/one.c": "#include <stdio.h>\n#include <lensprof/lensprof.h>\n",
 }
@@ -333,6 +335,9 @@ BAD = [
     ("src/store/file/store.c", '#include "cli/program/run.hpp"'),
     ("src/cli/program/run.cpp", '#include "core/own.h"'),
     ("src/cli/program/run.cpp", "#include <png.h>"),
+    ("src/cli/program/run.cpp", "#include <unistd.h>"),
+    ("src/photo/base/events.hpp", "#include <sys/stat.h>"),
+    ("src/photo/system/files.cpp", '#include "photo/base/events.hpp"'),
     ("src/photo/base/events.hpp", '#include "cli/program/run.hpp"'),
     ("src/photo/base/events.hpp", '#include "photo/pictures/picture.cpp"'),
     ("src/photo/base/events.hpp", "#include <png.h>"),

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "photo/system/system.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -17,7 +19,7 @@ void on_signal(int number) {
 void catch_interrupts() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding `ulimit -f` is a write error, like a full disk
+    system::survive_size_limits();
 }
 
 bool interrupted() { return interrupt_flag != 0; }

@@ -3,11 +3,10 @@
 #include <cstdlib>
 #include <cstring>
 
-#include <unistd.h>
-
 #include "photo/base/format.hpp"
 #include "photo/base/shell_word.hpp"
 #include "photo/base/utf8.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,7 +20,7 @@ std::string marked_line(bool colour, const char *code, const std::string &mark, 
 
 bool shows_colour() {
     const char *no_color = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) && !(no_color && *no_color) && terminal && std::strcmp(terminal, "dumb") != 0;
+    return system::is_terminal(stderr) && !(no_color && *no_color) && terminal && std::strcmp(terminal, "dumb") != 0;
 }
 
 void print_message(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }

@@ -5,8 +5,6 @@
 #include <map>
 #include <stdexcept>
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 
 #include "cli/program/exit_code.hpp"
@@ -16,6 +14,7 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/nearest.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -388,11 +387,7 @@ std::string Program::help(const std::vector<std::string> &words) const {
 namespace {
 
 // The largest resident set of this process.
-double peak_megabytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1e-3 * static_cast<double>(usage.ru_maxrss);  // given in kB
-}
+double peak_megabytes() { return 1e-6 * static_cast<double>(system::peak_memory_bytes()); }
 
 }  // namespace
 

@@ -5,13 +5,12 @@
 #include <ctime>
 #include <iostream>
 
-#include <unistd.h>
-
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/option_names.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/utf8.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 namespace {
@@ -53,7 +52,7 @@ Progress::Progress(Streams &streams, bool always)
     : streams_(streams),
       err_(streams.err),
       verbosity_(streams.verbosity),
-      is_shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && isatty(STDERR_FILENO)))) {}
+      is_shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && system::is_terminal(stderr)))) {}
 
 Progress::~Progress() { clear(); }
 

@@ -2,24 +2,16 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include "photo/base/failure.hpp"
 #include "photo/base/output_file.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 namespace {
 
-std::string place() {
-    const char *folder = std::getenv("TMPDIR");
-    return folder && *folder ? folder : "/tmp";
-}
-
-std::string temporary_name() { return place() + "/lensprof-XXXXXX"; }
+std::string start_of_name() { return system::temporary_folder() + "/lensprof-"; }
 
 [[noreturn]] void fail(const std::string &what) {
     throw Failure(LENSPROF_ERROR_WRITE, what + ": " + system_text(errno) + "; set TMPDIR to a folder with space");
@@ -28,17 +20,14 @@ std::string temporary_name() { return place() + "/lensprof-XXXXXX"; }
 }  // namespace
 
 MemoryFile::MemoryFile(const void *data, size_t size) {
-#ifdef MFD_CLOEXEC
-    file_ = memfd_create("lensprof", MFD_CLOEXEC);
-    if (file_ >= 0) path_ = "/proc/self/fd/" + std::to_string(file_);
-#endif
+    file_ = system::create_file_in_memory(path_);
     if (file_ < 0) {
-        path_ = temporary_name();
-        file_ = mkstemp(path_.data());
+        const auto create = [&] { return system::create_file(path_, 0600, system::Lifetime::kept); };
+        file_ = create_numbered(start_of_name(), "", path_, create);
         is_named_ = file_ >= 0;
     }
     if (file_ < 0) fail("bytes of a picture");
-    if (write_bytes_at(file_, 0, data, size)) return;
+    if (system::write_bytes_at(file_, 0, data, size)) return;
     const int error_number = errno;
     remove();
     errno = error_number;
@@ -48,30 +37,31 @@ MemoryFile::MemoryFile(const void *data, size_t size) {
 MemoryFile::~MemoryFile() { remove(); }
 
 void MemoryFile::remove() {
-    if (file_ >= 0) close(file_);
-    if (is_named_) unlink(path_.c_str());
+    if (file_ >= 0) system::close_file(file_);
+    if (is_named_) system::remove_file(path_);
 }
 
 ScratchFile::ScratchFile() {
-    file_ = open_unnamed(temporary_name());
-    if (file_ < 0) fail(place());
+    file_ = open_unnamed(start_of_name());
+    if (file_ < 0) fail(system::temporary_folder());
 }
 
-ScratchFile::~ScratchFile() { close(file_); }
+ScratchFile::~ScratchFile() { system::close_file(file_); }
 
 uint64_t ScratchFile::append(const void *data, size_t size) {
     const uint64_t begin = size_;
-    if (!write_bytes_at(file_, begin, data, size)) fail("intermediate results");
+    if (!system::write_bytes_at(file_, begin, data, size)) fail("intermediate results");
     size_ += size;
     return begin;
 }
 
 void ScratchFile::read(uint64_t begin, void *data, size_t size) const {
-    if (!read_bytes_at(file_, begin, data, size)) fail("intermediate results");
+    if (!system::read_bytes_at(file_, begin, data, size)) fail("intermediate results");
 }
 
-TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {
-    if (!mkdtemp(path_.data())) fail(place());
+TemporaryFolder::TemporaryFolder() {
+    const auto create = [&] { return system::create_private_folder(path_) ? 0 : -1; };
+    if (create_numbered(start_of_name(), "", path_, create) < 0) fail(system::temporary_folder());
 }
 
 TemporaryFolder::~TemporaryFolder() {

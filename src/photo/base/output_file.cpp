@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -12,11 +11,8 @@
 #include <mutex>
 #include <system_error>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "photo/base/paths.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -24,16 +20,21 @@ namespace {
 
 [[noreturn]] void fail(const std::string &path, int error_number) {
     const char *advice = "check the folder and its permissions";
-    if (error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG)
-        advice = "free some space or write to another disk";
+    bool is_full = error_number == ENOSPC || error_number == EFBIG;
+#ifdef EDQUOT
+    is_full |= error_number == EDQUOT;
+#endif
+    if (is_full) advice = "free some space or write to another disk";
     throw Failure(LENSPROF_ERROR_WRITE, path + ": cannot write: " + system_text(error_number) + "; " + advice);
 }
 
 // A rename would replace the link, not the file it points to.
 std::string follow_links(const std::string &path) {
-    std::unique_ptr<char, void (*)(void *)> real(realpath(path.c_str(), nullptr), std::free);
-    return real ? std::string(real.get()) : path;
+    const std::string real = system::resolve_links(path);
+    return real.empty() ? path : real;
 }
+
+constexpr unsigned owner_writes = 0200;  // of the permissions
 
 std::string folder_of(const std::string &path) {
     const size_t slash = path.rfind('/');
@@ -48,23 +49,10 @@ std::string extension_of(const std::string &path) {
 }
 
 // Not derived from the final name, which may already have the maximum length.
-int create_temporary(const std::string &target, mode_t mode, std::string &name) {
-    static std::atomic<unsigned> counter{0};
-    for (int attempt = 0; attempt < 1000; ++attempt) {
-        name = folder_of(target) + ".lensprof-" + std::to_string(getpid()) + "-" + std::to_string(++counter)
-               + extension_of(target);
-        const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (file >= 0 || errno != EEXIST) return file;
-    }
-    return -1;
-}
-
-int sync_path(const std::string &path, int flags) {
-    const int file = open(path.c_str(), flags | O_CLOEXEC);
-    if (file < 0) return errno;
-    const int error_number = fsync(file) == 0 ? 0 : errno;
-    close(file);
-    return error_number;
+int create_temporary(const std::string &target, unsigned permissions, system::Lifetime lifetime, std::string &name) {
+    const auto extension = extension_of(target);
+    return create_numbered(folder_of(target) + ".lensprof-", extension, name,
+                           [&] { return system::create_file(name, permissions, lifetime); });
 }
 
 // Those of all calls that write folders at this time.
@@ -85,7 +73,7 @@ bool is_left_over(const std::string &name) {
     for (const std::string &digits : {pid, number})
         if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
             return false;
-    return kill(static_cast<pid_t>(std::atol(pid.c_str())), 0) != 0 && errno == ESRCH;
+    return !system::is_running(std::strtoul(pid.c_str(), nullptr, 10));
 }
 
 }  // namespace
@@ -113,42 +101,20 @@ CommitWatch::~CommitWatch() {
     watches.erase(place_);
 }
 
+int create_numbered(const std::string &start, const std::string &end, std::string &name,
+                    const std::function<int()> &create) {
+    static std::atomic<unsigned> counter{0};
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+        name = start + std::to_string(system::process_number()) + "-" + std::to_string(++counter) + end;
+        const int result = create();
+        if (result >= 0 || errno != EEXIST) return result;
+    }
+    return -1;
+}
+
 int open_unnamed(const std::string &neighbour) {
-#ifdef O_TMPFILE
-    const std::string folder = folder_of(neighbour);
-    const int unnamed = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (unnamed >= 0) return unnamed;
-#endif
-    std::string name;  // not every file system supports unnamed files
-    const int created = create_temporary(neighbour, 0600, name);
-    if (created < 0) return -1;
-    close(created);
-    const int file = open(name.c_str(), O_RDWR | O_CLOEXEC);
-    unlink(name.c_str());
-    return file;
-}
-
-bool read_bytes_at(int file, uint64_t place, void *data, size_t size) {
-    for (size_t done = 0; done < size;) {
-        const ssize_t got =
-            pread(file, static_cast<char *>(data) + done, size - done, static_cast<off_t>(place + done));
-        if (got < 0 && errno == EINTR) continue;
-        if (got == 0) errno = EIO;  // the file ends
-        if (got <= 0) return false;
-        done += static_cast<size_t>(got);
-    }
-    return true;
-}
-
-bool write_bytes_at(int file, uint64_t place, const void *data, size_t size) {
-    for (size_t done = 0; done < size;) {
-        const ssize_t written =
-            pwrite(file, static_cast<const char *>(data) + done, size - done, static_cast<off_t>(place + done));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        done += static_cast<size_t>(written);
-    }
-    return true;
+    std::string name;
+    return create_temporary(neighbour, 0600, system::Lifetime::until_closed, name);
 }
 
 void check_folder(const std::string &folder, const std::string &item, lensprof_status folder_status,
@@ -156,7 +122,7 @@ void check_folder(const std::string &folder, const std::string &item, lensprof_s
     const std::string existing = existing_part(absolute_path(folder));
     if (!is_folder(existing))
         throw Failure(folder_status, item + ": " + existing + " is not a folder; give another name");
-    if (access(existing.c_str(), W_OK | X_OK) != 0)
+    if (!system::can_write_in(existing))
         throw Failure(write_status, item + ": cannot write in " + existing + ": " + system_text(errno)
                                         + "; check its permissions, or give another folder");
 }
@@ -185,44 +151,43 @@ void make_folder(const std::string &folder) {
 std::string system_text(int error_number) { return std::generic_category().message(error_number); }
 
 OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_links(path)) {
-    struct stat status = {};
-    const bool exists = stat(target_.c_str(), &status) == 0;
-    if (exists && !S_ISREG(status.st_mode))
+    const system::FileStatus status = system::status_of(target_);
+    const bool exists = status.kind != system::FileStatus::Kind::missing;
+    if (exists && status.kind != system::FileStatus::Kind::file)
         throw Failure(LENSPROF_ERROR_ARGUMENT, path_ + ": cannot write: not a regular file; give the name of a file");
-    const int file = create_temporary(target_, 0666, temporary_);
+    const int file = create_temporary(target_, 0666, system::Lifetime::kept, temporary_);
     if (file < 0) fail(path_, errno);
+    system::close_file(file);
     // Best effort: a file system without permissions refuses this, but the picture matters more.
-    mode_ = exists ? status.st_mode & 07777 : 0;
-    if (exists && fchmod(file, mode_ | S_IWUSR) != 0) errno = 0;  // writable until it is complete
-    close(file);
+    mode_ = exists ? status.permissions : 0;
+    if (exists) system::set_permissions(temporary_, mode_ | owner_writes);  // writable until it is complete
 }
 
 OutputFile::~OutputFile() {
-    if (!temporary_.empty()) unlink(temporary_.c_str());
+    if (!temporary_.empty()) system::remove_file(temporary_);
 }
 
 void OutputFile::sync() {
-    const int error_number = sync_path(temporary_, O_RDONLY);
-    if (error_number != 0) fail(path_, error_number);
+    if (!system::make_durable(temporary_)) fail(path_, errno);
     synced_ = true;
 }
 
 void OutputFile::commit() {
     if (!synced_) sync();
-    if (mode_ && !(mode_ & S_IWUSR) && chmod(temporary_.c_str(), mode_) != 0) errno = 0;
+    if (mode_ != 0 && (mode_ & owner_writes) == 0) system::set_permissions(temporary_, mode_);
     {
         const std::lock_guard<std::mutex> lock(watching);
         for (const CommitWatch::Note &note : watches) note(path_, temporary_);
     }
-    if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
+    if (!system::replace_file(temporary_, target_)) fail(path_, errno);
     temporary_.clear();
     // The data are durable and in place; not all file systems make the new name survive a power cut.
     const std::string folder = folder_of(target_);
-    sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+    system::make_names_durable(folder.empty() ? "." : folder);
 }
 
 void OutputFile::write(const void *data, size_t bytes) {
-    std::FILE *file = std::fopen(temporary_.c_str(), "wb");
+    std::FILE *file = system::open_stream(temporary_, "wb");
     if (!file) fail(path_, errno);
     errno = 0;
     const bool written = std::fwrite(data, 1, bytes, file) == bytes;

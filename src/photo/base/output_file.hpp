@@ -81,10 +81,10 @@ void write_file(const std::string &path, const void *data, size_t bytes);
 // sets errno if this fails.
 int open_unnamed(const std::string &neighbour);
 
-// Reads or writes all of these bytes, `place` bytes from the beginning of an open file. False, with errno, if this
-// fails.
-bool read_bytes_at(int file, uint64_t place, void *data, size_t size);
-bool write_bytes_at(int file, uint64_t place, const void *data, size_t size);
+// Calls create() with `name` set to `start`, the number of this process, a number and `end`, until the name is not
+// taken. Returns its result, at least 0, or -1 with errno.
+int create_numbered(const std::string &start, const std::string &end, std::string &name,
+                    const std::function<int()> &create);
 
 // Failure about `item` if `folder` is not writable and cannot be created: with `folder_status` if a file has its
 // name, else `write_status`. For checks before long computations.

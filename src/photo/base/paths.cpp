@@ -4,9 +4,8 @@
 #include <cctype>
 #include <filesystem>
 
-#include <sys/stat.h>
-
 #include "photo/base/utf8.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -63,9 +62,8 @@ bool is_same_file(const std::string &a, const std::string &b) {
 }
 
 std::string file_identity(const std::string &path) {
-    struct stat status = {};
-    if (stat(path.c_str(), &status) != 0) return absolute_path(path);
-    return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+    const std::string identity = system::status_of(path).identity;
+    return identity.empty() ? absolute_path(path) : identity;
 }
 
 std::string lowercase_extension(const std::string &path) {

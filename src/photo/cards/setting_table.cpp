@@ -1,7 +1,5 @@
 #include "photo/cards/setting_table.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/library.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 namespace {
@@ -107,8 +106,7 @@ Setter setter_of(const std::string &column) {
 }
 
 bool fits(const std::string &pattern, const std::string &file) {
-    if (fnmatch(pattern.c_str(), file.c_str(), 0) == 0) return true;
-    return fnmatch(("*/" + pattern).c_str(), file.c_str(), 0) == 0;
+    return system::fits_pattern(pattern, file) || system::fits_pattern("*/" + pattern, file);
 }
 
 void replace(const lensprof_profile_key &by, lensprof_profile_key &key) {

@@ -1,20 +1,15 @@
 #include "photo/folder/ledger.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/folder/attempt.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -25,10 +20,10 @@ std::string digest_of_text(std::string_view text) {
 }
 
 std::string stamp_of(const std::string &file) {
-    struct stat status = {};
-    if (stat(file.c_str(), &status) != 0) return {};
-    return format("%lld:%lld.%09ld", static_cast<long long>(status.st_size),
-                  static_cast<long long>(status.st_mtim.tv_sec), static_cast<long>(status.st_mtim.tv_nsec));
+    const system::FileStatus status = system::status_of(file);
+    if (status.kind == system::FileStatus::Kind::missing) return {};
+    return format("%lld:%lld.%09ld", static_cast<long long>(status.bytes), static_cast<long long>(status.modified_s),
+                  static_cast<long>(status.modified_ns));
 }
 
 std::string ascii_path(const std::string &path) {
@@ -87,16 +82,8 @@ FolderLock::FolderLock(const std::string &folder) : folder_(folder) {
     if (is_folder(folder)) acquire();
 }
 
-FolderLock::~FolderLock() {
-    if (file_ >= 0) close(file_);
-}
-
 void FolderLock::acquire() {
-    if (file_ >= 0) return;
-    file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
-        return;  // some file systems have no locks
-    close(file_);
+    if (lock_.acquire(folder_)) return;
     throw Failure(LENSPROF_ERROR_WRITE, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
                                               "another folder" + advice("output"));
 }

@@ -13,6 +13,7 @@
 #include "photo/base/output_file.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/report/report.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -34,14 +35,11 @@ class FolderLock {
 public:
     // Failure (failed) if another run holds the lock. A folder that does not exist yet is locked by acquire().
     explicit FolderLock(const std::string &folder);
-    ~FolderLock();
-    FolderLock(const FolderLock &) = delete;
-    FolderLock &operator=(const FolderLock &) = delete;
     void acquire();
 
 private:
     const std::string folder_;
-    int file_ = -1;
+    system::FolderLock lock_;
 };
 
 // Thrown for an output path with a file that calibrate did not write or that was modified since.

@@ -11,6 +11,7 @@
 #include "photo/pictures/picture_blocks.hpp"
 #include "photo/pictures/picture_excerpt.hpp"
 #include "photo/pictures/tiff_tags.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -19,11 +20,11 @@ namespace codec {
 namespace {
 
 TiffReader reader_of_file(std::FILE *file) {
-    return {
-        file_bytes(file), [file](uint64_t offset, uint8_t *bytes, size_t count) {
-            if (fseeko(file, static_cast<off_t>(offset), SEEK_SET) != 0 || std::fread(bytes, 1, count, file) != count)
-                throw UnusableTiff(TiffDefect::cut_off);
-        }};
+    return {file_bytes(file), [file](uint64_t offset, uint8_t *bytes, size_t count) {
+                if (!system::seek(file, static_cast<int64_t>(offset), SEEK_SET)
+                    || std::fread(bytes, 1, count, file) != count)
+                    throw UnusableTiff(TiffDefect::cut_off);
+            }};
 }
 
 // The full picture: the last directory that is stated to be it and not a JPEG, else the first directory.

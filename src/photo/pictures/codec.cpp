@@ -5,11 +5,10 @@
 #include <cstdlib>
 #include <new>
 
-#include <sys/stat.h>
-
 #include "photo/base/failure.hpp"
 #include "photo/base/file_kind.hpp"
 #include "photo/base/output_file.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -64,31 +63,27 @@ double convert_resolution(double value, PictureTraits::Unit from, PictureTraits:
 }
 
 File open_for_reading(const std::string &path) {
-    struct stat kind = {};
-    if (stat(path.c_str(), &kind) == 0 && !S_ISREG(kind.st_mode) && !S_ISDIR(kind.st_mode))  // would block until a
-                                                                                             // writer opens it
+    // A pipe would block until a writer opens it.
+    if (system::status_of(path).kind == system::FileStatus::Kind::other)
         throw Failure(LENSPROF_ERROR_READ, path + ": cannot read: not a regular file; give the name of a picture");
-    File file(std::fopen(path.c_str(), "rb"), std::fclose);
+    File file(system::open_stream(path, "rb"), std::fclose);
     if (!file)
         throw Failure(LENSPROF_ERROR_READ,
                       path + ": cannot read: " + system_text(errno) + "; check the file name and the permissions");
-    struct stat status = {};
-    if (fstat(fileno(file.get()), &status) != 0 || S_ISDIR(status.st_mode))
+    const system::FileStatus::Kind kind = system::status_of(file.get()).kind;
+    if (kind == system::FileStatus::Kind::folder || kind == system::FileStatus::Kind::missing)
         throw Failure(LENSPROF_ERROR_READ, path + ": cannot read: it is a folder; give the name of a picture");
     refuse_other_kind(path);
     return file;
 }
 
 File open_for_writing(const std::string &path) {
-    File file(std::fopen(path.c_str(), "wb"), std::fclose);
+    File file(system::open_stream(path, "wb"), std::fclose);
     if (!file) fail_to_write(path, system_text(errno), errno);
     return file;
 }
 
-uint64_t file_bytes(std::FILE *file) {
-    struct stat status = {};
-    return fstat(fileno(file), &status) == 0 ? static_cast<uint64_t>(status.st_size) : 0;
-}
+uint64_t file_bytes(std::FILE *file) { return system::status_of(file).bytes; }
 
 void close_written(File &file, const std::string &path) {
     if (std::fclose(file.release()) != 0) fail_to_write(path, system_text(errno), errno);

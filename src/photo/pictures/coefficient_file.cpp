@@ -4,12 +4,11 @@
 #include <cerrno>
 #include <cstring>
 
-#include <unistd.h>
-
 #include <jerror.h>
 
 #include "photo/base/output_file.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -46,7 +45,7 @@ struct CoefficientFile::Array {
 };
 
 CoefficientFile::~CoefficientFile() {
-    if (file_ >= 0) close(file_);
+    if (file_ >= 0) system::close_file(file_);
 }
 
 void CoefficientFile::attach(jpeg_compress_struct &info) {
@@ -80,7 +79,7 @@ void CoefficientFile::store(j_common_ptr info, Array &array) {
     const JDIMENSION count = std::min(array.window_rows, array.rows - array.window_start);
     for (JDIMENSION y = 0; y < count; ++y) {
         const uint64_t place = array.place + (array.window_start + uint64_t(y)) * array.row_bytes;
-        if (!write_bytes_at(file_, place, array.window[y], array.row_bytes)) ERREXIT(info, JERR_FILE_WRITE);
+        if (!system::write_bytes_at(file_, place, array.window[y], array.row_bytes)) ERREXIT(info, JERR_FILE_WRITE);
     }
     array.stored = std::max(array.stored, array.window_start + count);
 }
@@ -92,7 +91,7 @@ void CoefficientFile::load(j_common_ptr info, Array &array, JDIMENSION start) {
         const uint64_t place = array.place + (start + uint64_t(y)) * array.row_bytes;
         if (start + y >= array.stored)
             std::memset(array.window[y], 0, array.row_bytes);
-        else if (!read_bytes_at(file_, place, array.window[y], array.row_bytes))
+        else if (!system::read_bytes_at(file_, place, array.window[y], array.row_bytes))
             ERREXIT(info, JERR_FILE_READ);
     }
 }

@@ -8,6 +8,7 @@
 #include "photo/base/events.hpp"
 #include "photo/pictures/codec.hpp"
 #include "photo/pictures/picture_excerpt.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -35,7 +36,7 @@ bool contains(std::string_view text, std::string_view part) { return text.find(p
 class Scanner {
 public:
     Scanner(std::FILE *file, uint64_t start) : file_(file), origin_(start) {
-        if (fseeko(file, static_cast<off_t>(start), SEEK_SET) != 0) is_at_end_ = true;
+        if (!system::seek(file, static_cast<int64_t>(start), SEEK_SET)) is_at_end_ = true;
     }
 
     uint64_t position() const { return origin_ + next_; }

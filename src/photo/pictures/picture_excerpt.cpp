@@ -6,6 +6,7 @@
 
 #include "photo/base/events.hpp"
 #include "photo/pictures/file_boxes.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -104,7 +105,8 @@ public:
 
 bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes) {
     bytes.resize(count);
-    return fseeko(file, static_cast<off_t>(start), SEEK_SET) == 0 && std::fread(bytes.data(), 1, count, file) == count;
+    return system::seek(file, static_cast<int64_t>(start), SEEK_SET)
+           && std::fread(bytes.data(), 1, count, file) == count;
 }
 
 Replacement::Replacement(const std::string &path, std::FILE *from)

@@ -8,6 +8,7 @@
 
 #include "photo/base/format.hpp"
 #include "photo/pictures/coded_file.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -64,7 +65,7 @@ public:
         check();
         const File file = open_for_reading(path_);
         std::array<char, 2880> block;
-        if (fseeko(file.get(), static_cast<off_t>(end), SEEK_SET) != 0) return false;
+        if (!system::seek(file.get(), static_cast<int64_t>(end), SEEK_SET)) return false;
         while (const size_t read = std::fread(block.data(), 1, block.size(), file.get()))
             if (std::any_of(block.begin(), block.begin() + read, [](char c) { return c != 0; })) return true;
         return false;

@@ -14,6 +14,7 @@
 
 #include "photo/base/events.hpp"
 #include "photo/pictures/coefficient_file.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -81,7 +82,7 @@ struct JpegReader {
 
     static File open(const ReadRequest &request) {
         if (!request.bytes) return open_for_reading(request.path);
-        return {fmemopen(const_cast<uint8_t *>(request.bytes->data()), request.bytes->size(), "rb"), std::fclose};
+        return {system::open_bytes(request.bytes->data(), request.bytes->size()), std::fclose};
     }
 
     JpegState state;

@@ -7,6 +7,7 @@
 
 #include "photo/pictures/picture_stack.hpp"
 #include "photo/pictures/tiff_handle.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 
@@ -311,7 +312,7 @@ public:
             || tiff.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE)
             fail_unsupported(path_, "is a stack of ImageJ of an unusual kind; save it as single pictures first");
         if (offset + bytes > tiff.file_bytes()) fail_damaged(path_, "the file ends before this slice");
-        if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0)
+        if (!system::seek(file_.get(), static_cast<int64_t>(offset), SEEK_SET))
             fail_damaged(path_, "cannot find the slice");
     }
 

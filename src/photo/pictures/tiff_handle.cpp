@@ -6,6 +6,8 @@
 #include <cstring>
 #include <new>
 
+#include "photo/system/system.hpp"
+
 namespace lensprof {
 
 namespace codec {
@@ -61,7 +63,7 @@ public:
 
     static tmsize_t read(thandle_t self, void *to, tmsize_t size) {
         StartedFile &f = *static_cast<StartedFile *>(self);
-        const auto start = static_cast<uint64_t>(ftello(f.file_.get()));
+        const auto start = static_cast<uint64_t>(system::tell(f.file_.get()));
         const size_t count = std::fread(to, 1, static_cast<size_t>(size), f.file_.get());
         for (uint64_t i = start; i < std::min<uint64_t>(f.header_bytes_, start + count); i++)
             static_cast<uint8_t *>(to)[i - start] = f.header_[i];
@@ -70,8 +72,8 @@ public:
     static tmsize_t write(thandle_t, void *, tmsize_t) { return 0; }
     static toff_t seek(thandle_t self, toff_t offset, int whence) {
         std::FILE *file = static_cast<StartedFile *>(self)->file_.get();
-        const bool is_sought = fseeko(file, static_cast<off_t>(offset), whence) == 0;
-        return is_sought ? static_cast<toff_t>(ftello(file)) : static_cast<toff_t>(-1);
+        const bool is_sought = system::seek(file, static_cast<int64_t>(offset), whence);
+        return is_sought ? static_cast<toff_t>(system::tell(file)) : static_cast<toff_t>(-1);
     }
     static int close(thandle_t) { return 0; }  // by its owner
     static toff_t size(thandle_t self) { return file_bytes(static_cast<StartedFile *>(self)->file_.get()); }

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/pictures/picture_levels.hpp"
+#include "photo/system/system.hpp"
 
 namespace lensprof {
 namespace {
@@ -25,13 +23,8 @@ void check_size(const Scene &scene, uint32_t i, const Picture &header) {
 
 // The available memory: scene_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
 uint64_t available_memory() {
-    uint64_t bound = scene_max_bytes;
-    const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
-    if (pages > 0 && page_bytes > 0) bound = std::min(bound, uint64_t(pages) * uint64_t(page_bytes));
-    rlimit limit = {};
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-        bound = std::min(bound, uint64_t(limit.rlim_cur));
-    return bound;
+    const uint64_t bytes = system::available_memory_bytes();
+    return bytes > 0 ? std::min(scene_max_bytes, bytes) : scene_max_bytes;
 }
 
 }  // namespace
