@@ -79,7 +79,8 @@ wheels: ## make the wheels of all platforms in dist/ (TARGETS="linux-x86_64 ..."
 	packaging/wheels/build.py $(TARGETS)
 
 platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets
-	packaging/wheels/try.sh
+	@cmake/install-packages.sh packages-platforms.txt
+	packaging/wheels/try.sh || [ $$? = 77 ]
 	tests/bindings/run.sh build/liblensprof.so || [ $$? = 77 ]
 	tests/python/fleet.sh
 

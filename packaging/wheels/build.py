@@ -2,6 +2,7 @@
 """Wheels of the Python package with the library inside, for every platform, made on one machine.
 
 usage: build.py [--check] [TARGET...]     without a TARGET, all of them; build.py --list names them
+       build.py --sources | --sdist       only the sources of the libraries inside | only the sdist
 
 Writes dist/lensprof-VERSION.tar.gz (the sdist) and dist/*.whl, which are made from that sdist. clang of the package
 ziglang has the C library of every target; sources.py fetches NLopt, SQLite, pugixml and headers. Two runs give the same
@@ -12,6 +13,7 @@ import argparse
 import hashlib
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 import sys
@@ -48,6 +50,17 @@ def run(*command: object, **options) -> None:
         sys.exit(f"build.py: {' '.join(pathlib.Path(str(word)).name for word in command[:5])}: failed, exit {result.returncode}")
 
 
+def check_machine() -> None:
+    """The tools of tools.txt are programs for one kind of machine."""
+    if (sys.platform, platform.machine()) != ("linux", "x86_64"):
+        sys.exit(f"build.py: {platform.system()} {platform.machine()}: wheels are made on Linux x86-64; "
+                 "`pip wheel .` makes one for this machine")  # fmt: skip
+    if sys.version_info < (3, 11):
+        sys.exit(f"build.py: Python {platform.python_version()}: is too old for the tools of tools.txt; use 3.11 or newer")
+    if " " in str(ROOT):
+        sys.exit(f"build.py: {ROOT}: has a space, which the compiler's flags cannot hold; move the folder")
+
+
 def tools() -> pathlib.Path:
     """A Python with the packages of tools.txt, whose hashes pip checks."""
     python, wanted = BUILD / "tools/bin/python", (HERE / "tools.txt").read_text()
@@ -67,6 +80,10 @@ def sdist(python: pathlib.Path) -> pathlib.Path:
     DIST.mkdir(exist_ok=True)
     run(python, "-c", make, DIST, cwd=ROOT, stdout=subprocess.DEVNULL)
     archive = max(DIST.glob("lensprof-*.tar.gz"), key=lambda path: path.stat().st_mtime)
+    version = archive.name.removesuffix(".tar.gz")
+    for old in DIST.glob("lensprof-*"):  # pip would choose among versions
+        if old != archive and not old.name.startswith(version + "-"):
+            old.unlink()
     shutil.rmtree(BUILD / "sdist", ignore_errors=True)
     tarfile.open(archive).extractall(BUILD / "sdist")
     return BUILD / "sdist" / archive.name.replace(".tar.gz", "")
@@ -103,6 +120,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Make the wheels of lensprof.")
     parser.add_argument("targets", nargs="*", metavar="TARGET")
     parser.add_argument("--list", action="store_true", help="name the targets")
+    parser.add_argument("--sources", action="store_true", help="fetch the sources of the libraries inside, and stop")
+    parser.add_argument("--sdist", action="store_true", help="make the sdist, and stop")
     parser.add_argument("--check", action="store_true", help="make each wheel twice, and compare the bytes")
     options = parser.parse_args()
     if options.list:
@@ -111,9 +130,15 @@ def main() -> None:
     unknown = [name for name in options.targets if name not in TARGETS]
     if unknown:
         parser.error(f"{unknown[0]}: is no target; they are {', '.join(TARGETS)}")
+    check_machine()
     python = tools()
-    run(python, HERE / "sources.py", BUILD / "sources")
+    if not options.sdist:
+        run(python, HERE / "sources.py", BUILD / "sources")
+    if options.sources:
+        return
     source = sdist(python)
+    if options.sdist:
+        return
     for name in options.targets or TARGETS:
         path = wheel(python, source, name, BUILD / name, DIST)
         run(python, HERE / "inspect_wheel.py", path)

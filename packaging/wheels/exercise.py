@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What every platform must give alike: prints a line of each result, with the hash of its bytes.
+"""What every platform must give alike, as exercised.txt has it: prints a line of each result, with a hash of its bytes.
 
 Corrections, blobs, integer plans and files are the same bytes everywhere; numbers of a fit are printed to as many places as
 the mathematical functions of the systems agree.

@@ -4,9 +4,9 @@
 usage: sources.py FOLDER
 
 FOLDER receives a folder of each library (eigen, nlohmann, nlopt, pugixml, sqlite), their licences (licenses/NAME), and
-a list of them for programs that check licences and vulnerabilities (lensprof.cdx.json, CycloneDX 1.6). cmake/
-sources builds lensprof with them: cmake -DLENSPROF_SOURCES=FOLDER. A folder of other versions is replaced; the last
-step is to rename a complete one, so that a run that was stopped is done again.
+lists of them for programs that check licences and vulnerabilities (lensprof.cdx.json and, with the start-up code of
+DLLs, lensprof-windows.cdx.json; CycloneDX 1.6). `cmake -DLENSPROF_SOURCES=FOLDER` builds lensprof with them. A folder
+of other versions is replaced; the last step is to rename a complete one, so that a run that was stopped is done again.
 """
 
 import argparse
@@ -44,7 +44,7 @@ LIBRARIES = (
             ("nlopt-2.9.1/COPYING", "nlopt-2.9.1/src/algs/slsqp/COPYRIGHT", "nlopt-2.9.1/src/algs/direct/COPYING",
              "nlopt-2.9.1/src/algs/bobyqa/COPYRIGHT", "nlopt-2.9.1/src/algs/cobyla/COPYRIGHT",
              "nlopt-2.9.1/src/algs/esch/COPYRIGHT", "nlopt-2.9.1/src/algs/newuoa/COPYRIGHT")),
-    Library("sqlite", "blessing", "pkg:cargo/libsqlite3-sys", "0.40.0", "sqlite3",
+    Library("sqlite", "blessing", "pkg:cargo/libsqlite3-sys", "0.36.0", "sqlite3",
             ("sqlite3.h", r"#define SQLITE_VERSION +\"(\d+)\.(\d+)\.(\d+)\""), ()),
     Library("pugixml", "MIT", "pkg:pypi/pugixml", "0.8.0", "src/third_party/pugixml",
             ("CMakeLists.txt", r"pugixml VERSION (\d+)\.(\d+)"), ("src/third_party/pugixml/LICENSE.md",)),
@@ -138,14 +138,18 @@ def collect(unpacked: dict[str, pathlib.Path], compiler: pathlib.Path, folder: p
             (texts / "LICENSE.txt").write_text(NOTES[library.name].format(package=library.package, version=library.version))
         url = f"{library.package}@{library.version}"
         components.append(component(library.name, stated_version(library, folder / library.name), library.license, url))
+    version = next(compiler.parent.glob("ziglang-*.dist-info")).name.split("-")[1].replace(".dist", "")
+    part = f"pkg:pypi/ziglang@{version}"
     for name in ("libcxx", "libcxxabi", "libunwind"):  # of the compiler, static in C++ libraries
         (folder / "licenses" / name).mkdir()
         shutil.copy(compiler / "lib" / name / "LICENSE.TXT", folder / "licenses" / name)
+        components.append(component(name, version, LIBCXX, part))
+    components.append(component("compiler-rt", version, "MIT", part))  # that of zig
     (folder / "licenses/mingw-w64").mkdir()  # start-up code of DLLs for Windows
     shutil.copy(compiler / "lib/libc/mingw/COPYING", folder / "licenses/mingw-w64")
-    version = next(compiler.parent.glob("ziglang-*.dist-info")).name.split("-")[1].replace(".dist", "")
-    components.append(component("libcxx", version, LIBCXX, f"pkg:pypi/ziglang@{version}"))
     (folder / "lensprof.cdx.json").write_text(bill_of_materials(components))
+    components.append(component("mingw-w64", version, "ZPL-2.1", part))
+    (folder / "lensprof-windows.cdx.json").write_text(bill_of_materials(components))
 
 
 def main() -> None:

@@ -23,6 +23,11 @@ endforeach()
 set(CMAKE_AR ${CMAKE_BINARY_DIR}/zig-ar)
 set(CMAKE_RANLIB ${CMAKE_BINARY_DIR}/zig-ranlib)
 set(CMAKE_RC_COMPILER ${CMAKE_BINARY_DIR}/zig-rc)
+if(CMAKE_SYSTEM_NAME STREQUAL "Darwin") # CMake asks for what only programs with an rpath need, and for Apple's folders
+  set(CMAKE_INSTALL_NAME_TOOL ${CMAKE_COMMAND})
+  set(CMAKE_OSX_SYSROOT "")
+  set(CMAKE_OSX_DEPLOYMENT_TARGET "")
+endif()
 # Nothing of the machine that builds.
 set(CMAKE_FIND_ROOT_PATH /nowhere)
 foreach(kind LIBRARY INCLUDE PACKAGE)
