@@ -7,7 +7,7 @@ namespace codec {
 
 namespace {
 
-[[noreturn]] void fail_without(const std::string &path) {
+[[noreturn]] void fail_without_fits(const std::string &path) {
     fail_unsupported(
         path,
         "is a FITS picture, and this lensprof was built without cfitsio; install libcfitsio-dev and rebuild "
@@ -16,11 +16,11 @@ namespace {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_fits(const ReadRequest &request) { fail_without(request.path); }
+std::unique_ptr<RowSource> open_fits(const ReadRequest &request) { fail_without_fits(request.path); }
 
-CodedMetadata fits_metadata(const std::string &path) { fail_without(path); }
+CodedMetadata fits_metadata(const std::string &path) { fail_without_fits(path); }
 
-FitsPlanes fits_planes(const std::string &path) { fail_without(path); }
+FitsPlanes fits_planes(const std::string &path) { fail_without_fits(path); }
 
 }  // namespace codec
 

@@ -7,7 +7,7 @@ namespace codec {
 
 namespace {
 
-[[noreturn]] void fail_without(const std::string &path, const std::string &kind) {
+[[noreturn]] void fail_without_heif(const std::string &path, const std::string &kind) {
     fail_unsupported(path, "is a picture in " + kind + ", and this lensprof was built without libheif; install "
                                                        "libheif-dev and rebuild lensprof, or convert the file to PNG, "
                                                        "for instance with heif-convert");
@@ -16,10 +16,10 @@ namespace {
 }  // namespace
 
 std::unique_ptr<RowSource> open_heif(const ReadRequest &request, const std::string &kind) {
-    fail_without(request.path, kind);
+    fail_without_heif(request.path, kind);
 }
 
-CodedMetadata heif_metadata(const std::string &path, const std::string &kind) { fail_without(path, kind); }
+CodedMetadata heif_metadata(const std::string &path, const std::string &kind) { fail_without_heif(path, kind); }
 
 HeifParts heif_parts(const std::string &, const std::string &) { return {}; }
 

@@ -7,7 +7,7 @@ namespace codec {
 
 namespace {
 
-[[noreturn]] void fail_without(const std::string &path) {
+[[noreturn]] void fail_without_jxl(const std::string &path) {
     fail_unsupported(path,
                      "is a JPEG XL picture, and this lensprof was built without libjxl; install libjxl-dev and "
                      "rebuild lensprof, or convert the file to PNG, for instance with djxl");
@@ -15,9 +15,9 @@ namespace {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_jxl(const ReadRequest &request) { fail_without(request.path); }
+std::unique_ptr<RowSource> open_jxl(const ReadRequest &request) { fail_without_jxl(request.path); }
 
-CodedMetadata jxl_metadata(const std::string &path) { fail_without(path); }
+CodedMetadata jxl_metadata(const std::string &path) { fail_without_jxl(path); }
 
 }  // namespace codec
 

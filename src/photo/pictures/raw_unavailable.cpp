@@ -8,7 +8,7 @@ namespace codec {
 
 namespace {
 
-[[noreturn]] void fail_without(const std::string &path, const std::string &kind) {
+[[noreturn]] void fail_without_raw(const std::string &path, const std::string &kind) {
     fail_unsupported(path, "camera raw file (" + kind + "), and this lensprof was built without LibRaw; install "
                                                         "libraw-dev and rebuild lensprof, or develop the file to a "
                                                         "linear 16 bit TIFF");
@@ -17,10 +17,12 @@ namespace {
 }  // namespace
 
 std::unique_ptr<RowSource> open_raw(const ReadRequest &request, const std::string &kind) {
-    fail_without(request.path, kind);
+    fail_without_raw(request.path, kind);
 }
 
-std::vector<uint8_t> raw_preview_bytes(const std::string &path, const std::string &kind) { fail_without(path, kind); }
+std::vector<uint8_t> raw_preview_bytes(const std::string &path, const std::string &kind) {
+    fail_without_raw(path, kind);
+}
 
 }  // namespace codec
 

@@ -7,7 +7,7 @@ namespace codec {
 
 namespace {
 
-[[noreturn]] void fail_without(const std::string &path) {
+[[noreturn]] void fail_without_webp(const std::string &path) {
     fail_unsupported(path,
                      "is a WebP picture, and this lensprof was built without libwebp; install libwebp-dev and rebuild "
                      "lensprof, or convert the file to PNG, for instance with dwebp");
@@ -15,9 +15,9 @@ namespace {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_webp(const ReadRequest &request) { fail_without(request.path); }
+std::unique_ptr<RowSource> open_webp(const ReadRequest &request) { fail_without_webp(request.path); }
 
-CodedMetadata webp_metadata(const std::string &path) { fail_without(path); }
+CodedMetadata webp_metadata(const std::string &path) { fail_without_webp(path); }
 
 }  // namespace codec
 
