@@ -2,6 +2,7 @@
 """Wheels of the Python package with the library inside, for every platform, made on one machine.
 
 usage: build.py [--check] [TARGET...]     without a TARGET, all of them; build.py --list names them
+       build.py --photo                   the photograph library, a wheel of its own for Linux x86-64
        build.py --sources | --sdist       only the sources of the libraries inside | only the sdist
 
 Writes dist/lensprof-VERSION.tar.gz (the sdist) and dist/*.whl, which are made from that sdist. clang of the package
@@ -19,6 +20,8 @@ import subprocess
 import sys
 import tarfile
 from typing import NamedTuple
+
+import pictures
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -81,18 +84,23 @@ def sdist(python: pathlib.Path) -> pathlib.Path:
     run(python, "-c", make, DIST, cwd=ROOT, stdout=subprocess.DEVNULL)
     archive = max(DIST.glob("lensprof-*.tar.gz"), key=lambda path: path.stat().st_mtime)
     version = archive.name.removesuffix(".tar.gz")
-    for old in DIST.glob("lensprof-*"):  # pip would choose among versions
-        if old != archive and not old.name.startswith(version + "-"):
+    for old in DIST.glob("lensprof[-_]*"):  # pip would choose among versions
+        if old != archive and not old.name.startswith((version + "-", version.replace("lensprof", "lensprof_photo") + "-")):
             old.unlink()
     shutil.rmtree(BUILD / "sdist", ignore_errors=True)
     tarfile.open(archive).extractall(BUILD / "sdist")
     return BUILD / "sdist" / archive.name.replace(".tar.gz", "")
 
 
-def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib.Path, dist: pathlib.Path) -> pathlib.Path:
-    """The wheel of a target, built in `folder`."""
+def zig_program() -> pathlib.Path:
+    return next((BUILD / "tools/lib").glob("python3*/site-packages/ziglang/zig"))
+
+
+def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib.Path, dist: pathlib.Path,
+          project: str = ".", more: dict[str, object] = {}) -> pathlib.Path:  # fmt: skip
+    """The wheel of a target, built in `folder`; `project`: where its pyproject.toml is."""
     target = TARGETS[name]
-    zig = next((BUILD / "tools/lib").glob("python3*/site-packages/ziglang/zig"))
+    zig = zig_program()
     defines = {
         "CMAKE_TOOLCHAIN_FILE": source / "packaging/wheels/zig.cmake",
         "LENSPROF_ZIG": zig,
@@ -100,6 +108,7 @@ def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib
         "LENSPROF_SOURCES": BUILD / "sources",
         # No symbols, and no path of this machine.
         "CMAKE_SHARED_LINKER_FLAGS": "-s",
+        **more,
         **{f"CMAKE_{language}_FLAGS": f"-ffile-prefix-map={source}=. -ffile-prefix-map={BUILD}=." for language in ("C", "CXX")},
     }
     settings = [f"build-dir={folder / 'build'}", "wheel.tags=" + ";".join(f"py3-none-{tag}" for tag in target.tags)]
@@ -109,17 +118,37 @@ def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib
     for old in (made, folder / "build"):  # the files of an sdist have no times by which to tell what changed; zig has a cache
         shutil.rmtree(old, ignore_errors=True)
     run(python, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation",
-        "-w", made, *[f"-C{setting}" for setting in settings], source,
+        "-w", made, *[f"-C{setting}" for setting in settings], source / project,
         env={"SOURCE_DATE_EPOCH": DATE, **os.environ, "CMAKE_BUILD_PARALLEL_LEVEL": str(os.cpu_count()),
              "ZIG_LOCAL_CACHE_DIR": str(folder / "cache"), "ZIG_GLOBAL_CACHE_DIR": str(BUILD / "cache")})  # fmt: skip
     path = next(made.glob("*.whl"))
     return pathlib.Path(shutil.move(path, dist / path.name))
 
 
+def photo_wheel(python: pathlib.Path, source: pathlib.Path, folder: pathlib.Path, dist: pathlib.Path) -> pathlib.Path:
+    """That of the photograph library."""
+    name = "linux-x86_64"
+    libraries = BUILD / "pictures" / name
+    pictures.make(zig_program(), TARGETS[name].zig, BUILD / "sources", libraries)
+    project = "packaging/photo"
+    for text in ("LICENSE", "NOTICE"):
+        shutil.copy(source / text, source / project)
+    return wheel(python, source, name, folder, dist, project, {"LENSPROF_PICTURES": libraries})
+
+
+def make_twice(path: pathlib.Path, make, again: pathlib.Path) -> None:
+    """Makes a wheel a second time, and compares the bytes."""
+    second = make(again, BUILD / "again/dist")
+    if hashlib.sha256(path.read_bytes()).digest() != hashlib.sha256(second.read_bytes()).digest():
+        sys.exit(f"build.py: {path.name}: the second one differs; compare {path} and {second}")
+    print(f"{path.name}: made twice, the same bytes", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Make the wheels of lensprof.")
     parser.add_argument("targets", nargs="*", metavar="TARGET")
     parser.add_argument("--list", action="store_true", help="name the targets")
+    parser.add_argument("--photo", action="store_true", help="make the wheel of the photograph library instead")
     parser.add_argument("--sources", action="store_true", help="fetch the sources of the libraries inside, and stop")
     parser.add_argument("--sdist", action="store_true", help="make the sdist, and stop")
     parser.add_argument("--check", action="store_true", help="make each wheel twice, and compare the bytes")
@@ -139,14 +168,16 @@ def main() -> None:
     source = sdist(python)
     if options.sdist:
         return
-    for name in options.targets or TARGETS:
-        path = wheel(python, source, name, BUILD / name, DIST)
+    if options.photo:
+        makers = {"photo": lambda folder, dist: photo_wheel(python, source, folder, dist)}
+    else:
+        makers = {name: lambda folder, dist, name=name: wheel(python, source, name, folder, dist)
+                  for name in options.targets or TARGETS}  # fmt: skip
+    for name, make in makers.items():
+        path = make(BUILD / name, DIST)
         run(python, HERE / "inspect_wheel.py", path)
         if options.check:
-            again = wheel(python, source, name, BUILD / "again" / name, BUILD / "again/dist")
-            if hashlib.sha256(path.read_bytes()).digest() != hashlib.sha256(again.read_bytes()).digest():
-                sys.exit(f"build.py: {path.name}: the second one differs; compare {path} and {again}")
-            print(f"{path.name}: made twice, the same bytes", flush=True)
+            make_twice(path, make, BUILD / "again" / name)
 
 
 if __name__ == "__main__":

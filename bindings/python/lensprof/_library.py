@@ -1,14 +1,15 @@
 """The shared libraries: finding them, errors, and handles that must be released.
 
 Search order: the file named by the environment variable LENSPROF_LIBRARY, the folder of this package (wheels have it
-there), the system's loader. The photograph library is loaded when it is used first: LENSPROF_PHOTO_LIBRARY, the folder of this package, that
-of the base library, the system's loader.
+there), the system's loader. The photograph library is loaded when it is used first: LENSPROF_PHOTO_LIBRARY, the folder of
+this package, that of the package lensprof_photo (a wheel of its own), that of the base library, the system's loader.
 """
 from __future__ import annotations
 
 import contextlib
 import ctypes
 import ctypes.util
+import importlib.util
 import os
 import pathlib
 import sys
@@ -89,10 +90,12 @@ def photo() -> ctypes.CDLL:
     """The photograph library."""
     global _photo
     if _photo is None:
-        folders = [pathlib.Path(__file__).parent, pathlib.Path(lib._name).parent]
+        package = importlib.util.find_spec("lensprof_photo")
+        own = [pathlib.Path(place) for place in (package.submodule_search_locations or [])] if package else []
+        folders = [pathlib.Path(__file__).parent, *own, pathlib.Path(lib._name).parent]
         library = _open("LENSPROF_PHOTO_LIBRARY", "lensprof-photo", folders,
                         "the photograph library of lensprof, which reads pictures and calibrates folders, is not installed; "
-                        "install lensprof with it (`make install`)")
+                        "install it (`pip install \"lensprof[photo]\"` on Linux x86-64, or `make install`)")
         _declare(library, _abi.PHOTO_FUNCTIONS)
         _photo = library
     return _photo
