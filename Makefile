@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help wheels platforms deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help wheels platforms deb deb-try deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -77,6 +77,14 @@ bench-lookup: build ## measure lookups between stored settings on Lensfun's data
 wheels: ## make the wheels of all platforms in dist/ (TARGETS="linux-x86_64 ..." makes some)
 	@cmake/install-packages.sh packages-wheels.txt
 	packaging/wheels/build.py $(TARGETS)
+
+deb: deps ## build the Debian packages of what is committed: build/deb
+	@cmake/install-packages.sh packages-profiles.txt
+	@cmake/install-packages.sh packages-deb.txt
+	packaging/debian/build.sh
+
+deb-try: deb ## install them in a minimal Debian 12, run their tests there, and remove them; needs root
+	packaging/debian/build.sh --try
 
 platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets
 	@cmake/install-packages.sh packages-platforms.txt
