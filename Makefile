@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help wheels platforms deb deb-try deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help wheels platforms deb deb-try recipes release-check deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -74,9 +74,10 @@ bench-lookup: build ## measure lookups between stored settings on Lensfun's data
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --lookup
 
-wheels: ## make the wheels of all platforms in dist/ (TARGETS="linux-x86_64 ..." makes some)
+wheels: ## make the wheels of all platforms and the photograph library's in dist/ (TARGETS="linux-x86_64 ..." makes some)
 	@cmake/install-packages.sh packages-wheels.txt
 	packaging/wheels/build.py $(TARGETS)
+	$(if $(TARGETS),,packaging/wheels/build.py --photo)
 
 deb: deps ## build the Debian packages of what is committed: build/deb
 	@cmake/install-packages.sh packages-profiles.txt
@@ -85,6 +86,15 @@ deb: deps ## build the Debian packages of what is committed: build/deb
 
 deb-try: deb ## install them in a minimal Debian 12, run their tests there, and remove them; needs root
 	packaging/debian/build.sh --try
+
+recipes: ## set version and hash in the recipes of conda-forge, Homebrew and vcpkg, and check them
+	@cmake/install-packages.sh packages-wheels.txt
+	packaging/wheels/build.py --sdist
+	packaging/recipes/recipes.py
+	packaging/recipes/recipes.py --try
+
+release-check: ## what must hold before a release: versions, CHANGELOG, ABI, wheels, sources, hashes
+	packaging/release_check.py
 
 platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets
 	@cmake/install-packages.sh packages-platforms.txt
