@@ -65,14 +65,17 @@ void f0r_destruct(f0r_instance_t instance) {
 
 void f0r_set_param_value(f0r_instance_t instance, f0r_param_t value, int index) {
     lens *this = instance;
-    this->is_ready = 0;
-    if (index == STRENGTH) this->strength = *(f0r_param_double *)value;
+    if (index == STRENGTH) {
+        const double strength = *(f0r_param_double *)value;
+        if (strength != this->strength) this->strength = strength, this->is_ready = 0;
+    }
     if (index != PROFILE && index != RESPONSE) return;
-    const char *text = *(f0r_param_string *)value;
+    const char *text = *(f0r_param_string *)value, *old = this->texts[index];
+    if (!text || (old && strcmp(text, old) == 0)) return; /* programs set all parameters again for every frame */
     char *copy = malloc(strlen(text) + 1);
     if (copy) strcpy(copy, text);
     free(this->texts[index]);
-    this->texts[index] = copy;
+    this->texts[index] = copy, this->is_ready = 0;
 }
 
 void f0r_get_param_value(f0r_instance_t instance, f0r_param_t value, int index) {
@@ -91,7 +94,7 @@ static void *read_file(const char *path, size_t *size) {
     FILE *file = fopen(path, "rb");
     char *data = file ? malloc(LARGEST) : NULL;
     *size = data ? fread(data, 1, LARGEST, file) : 0;
-    if (!data || ferror(file)) {
+    if (!data || ferror(file) || *size == LARGEST) {
         fprintf(stderr, "lensprof: %s: cannot be read; give the file of a profile as the first parameter\n", path);
         free(data), data = NULL;
     }
@@ -125,20 +128,35 @@ static int read_profile(const char *path, first_profile *first) {
     if (status != LENSPROF_OK)
         fprintf(stderr, "lensprof: %s: %s\n", path, error.text);
     else if (!first->is_found)
-        fprintf(stderr, "lensprof: %s: has no usable profile\n", path);
+        fprintf(stderr, "lensprof: %s: has no usable profile; give a file that has one\n", path);
     return status == LENSPROF_OK && first->is_found;
+}
+
+/* A number such as 2.2, or 2,2 as some locales of video programs write it; 0 for anything else. strtod() would depend
+ * on the locale of the program. */
+static double number_of(const char *text) {
+    double number = 0.0, unit = 1.0;
+    int has_point = 0, has_digit = 0;
+    for (; *text; text++) {
+        if ((*text == '.' || *text == ',') && !has_point) {
+            has_point = 1;
+        } else if (*text >= '0' && *text <= '9') {
+            has_digit = 1, number = 10.0 * number + (*text - '0'), unit *= has_point ? 10.0 : 1.0;
+        } else {
+            return 0.0;
+        }
+    }
+    return has_digit ? number / unit : 0.0;
 }
 
 /* Sets the response that the text names, where it is not that of the profile; 0 with a message if it is unknown. */
 static int choose_response(const char *text, const first_profile *first, lensprof_response *response,
                            lensprof_apply_options *options) {
-    char *end;
-    const double exponent = text ? strtod(text, &end) : 0.0;
     if (!text || !*text) text = first->has_response ? "profile" : "srgb";
     if (strcmp(text, "profile") == 0) return 1;
     if (strcmp(text, "srgb") == 0)
         lensprof_response_set_srgb(response);
-    else if (!(exponent > 0.0) || *end || lensprof_response_set_gamma(response, exponent) != LENSPROF_OK) {
+    else if (lensprof_response_set_gamma(response, number_of(text)) != LENSPROF_OK) {
         fprintf(stderr, "lensprof: response %s: is unknown; use profile, srgb, or an exponent such as 2.2\n", text);
         return 0;
     }

@@ -5,8 +5,10 @@ usage: test_frei0r.py PLUGIN      exit 77: FFmpeg with its filter frei0r, or Num
 LENSPROF_LIBRARY and PYTHONPATH as for tests/python.
 """
 
+import ctypes
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -36,6 +38,25 @@ def filtered(frames, plugin, parameters):
     return np.frombuffer(done.stdout, np.uint8).reshape(-1, HEIGHT, WIDTH, 4), done.stderr.decode()
 
 
+def set_every_frame(plugin, before, after):
+    """Video programs set the parameters before every frame: the profile is read when it changes only."""
+    library = ctypes.CDLL(str(plugin))
+    library.f0r_construct.restype = ctypes.c_void_p
+    instance = ctypes.c_void_p(library.f0r_construct(WIDTH, HEIGHT))
+    profile = pathlib.Path("once.json")
+    shutil.copy("linear.json", profile)
+    for is_there in (True, False):
+        for index, text in ((0, b"once.json"), (1, b"srgb")):
+            library.f0r_set_param_value(instance, ctypes.byref(ctypes.c_char_p(text)), index)
+        library.f0r_set_param_value(instance, ctypes.byref(ctypes.c_double(1)), 2)
+        out = np.zeros_like(before)
+        library.f0r_update(instance, ctypes.c_double(0), before.ctypes.data_as(ctypes.c_void_p),
+                           out.ctypes.data_as(ctypes.c_void_p))  # fmt: skip
+        assert np.array_equal(out, after), is_there
+        profile.unlink(missing_ok=True)
+    library.f0r_destruct(instance)
+
+
 def main():
     plugin = pathlib.Path(sys.argv[1]).resolve()
     try:
@@ -52,9 +73,14 @@ def main():
         for name, profile in (("linear.json", linear), ("measured.json", measured)):
             lp.formats.write_profiles(name, [profile])
         pathlib.Path("not.json").write_text("{}")
+        pathlib.Path("empty.json").touch()
+        newer = bytearray(linear.pack())
+        newer[8] += 1  # its version
+        pathlib.Path("newer.blob").write_bytes(newer)
         for parameters, profile, response, strength in (
             ("linear.json", linear, lp.Response.srgb(), 1),
             ("linear.json|2.2", linear, lp.Response.from_gamma(2.2), 1),
+            (r"linear.json|2\,2", linear, lp.Response.from_gamma(2.2), 1),
             ("measured.json", measured, measured.response[0], 1),
             ("measured.json|profile|0.5", measured, measured.response[0], 0.5),
             ("measured.json|srgb|1", measured, lp.Response.srgb(), 1),
@@ -69,11 +95,19 @@ def main():
             ("not.json", "lensprof: not.json: "),
             ("linear.json|loud", "response loud: is unknown; use profile, srgb, or an exponent"),
             ("linear.json|-1", "response -1: is unknown"),
+            ("linear.json|2.2.2", "response 2.2.2: is unknown"),
+            ("linear.json|1e9", "response 1e9: is unknown"),
+            ("linear.json|99", "response 99: is unknown"),
+            ("linear.json|srgb|nan", "strength"),
+            ("newer.blob", "lensprof: newer.blob: "),
+            ("empty.json", "lensprof: empty.json: "),
         ):
             found, said = filtered(frames[:5], plugin, parameters)
-            assert said.count("lensprof: ") == 1 and text in said, said
+            assert said.count("lensprof: ") == 1 and text in said, (parameters, said)
             assert np.array_equal(found, frames[:5]), parameters
-    print(f"test_frei0r: {FRAMES} frames, five sets of parameters, four errors")
+        set_every_frame(plugin, frames[0], lp.correct(frames[0], lp.Profile(key=key, response=lp.Response.srgb(),
+                                                                            vignetting=linear.vignetting[0])))  # fmt: skip
+    print(f"test_frei0r: {FRAMES} frames, six sets of parameters, ten errors, parameters set for every frame")
 
 
 if __name__ == "__main__":
