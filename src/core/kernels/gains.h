@@ -96,6 +96,16 @@ static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint
         for (uint32_t i = 0; i < count; i += LANES)
             f_store3(s->factor + 3 * i, f_mul(f_load(gain[channel[0]] + i), times[0]),
                      f_mul(f_load(gain[channel[1]] + i), times[1]), f_mul(f_load(gain[channel[2]] + i), times[2]));
+#if LANES > 1
+    } else if (plan->samples == 4) { /* the last one is alpha */
+        const uint8_t *channel = plan->channel_of_sample;
+        const float *a = gain[channel[0]], *b = gain[channel[1]], *c = gain[channel[2]];
+        const float at = plan->times[channel[0]], bt = plan->times[channel[1]], ct = plan->times[channel[2]];
+        for (uint32_t i = 0; i < count; i++) {
+            float *factor = s->factor + 4 * i;
+            factor[0] = a[i] * at, factor[1] = b[i] * bt, factor[2] = c[i] * ct, factor[3] = 1.0f;
+        }
+#endif
     } else {
         for (uint32_t i = 0; i < count; i++)
             for (uint32_t n = 0; n < plan->samples; n++) {

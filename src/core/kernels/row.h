@@ -47,8 +47,14 @@ static inline float near_white_code(const lensprof_plan *plan, float unit) {
  * `step`. */
 static void approach_white(const lensprof_plan *plan, strip *s, uint32_t count, uint32_t pitch, uint32_t step,
                            float unit) {
+#if LANES > 1
+    const float near_white = near_white_code(plan, unit);
+#endif
     for (uint32_t i = 0; i < count; i++) {
         const float *value = s->light + i * step;
+#if LANES > 1
+        if (!(value[0] > near_white) && !(value[pitch] > near_white) && !(value[2 * pitch] > near_white)) continue;
+#endif
         float *gain = s->factor + i * step, brightest = 0.0f, darkest = 1.0f, largest = 0.0f;
         for (uint32_t c = 0; c < 3; c++) {
             float sample = value_of_code(plan, value[c * pitch], pitch > 1 ? c : plan->channel_of_sample[c], unit);
@@ -255,12 +261,45 @@ static float largest_value(const float *values, uint32_t count) {
     return largest;
 }
 
+#if LANES > 1
+/* That of red, green and blue alone: alpha is full in most pictures. Little-endian, as all processors with lanes. */
+static float largest_colour(const lensprof_plan *plan, const run *r) {
+    const uint16_t *codes = (const uint16_t *)(const void *)r->from;
+    const float *values = (const float *)(const void *)r->from;
+    const uint8_t *from = r->from;
+    const uint32_t pixels = r->count / 4;
+    float largest = 0.0f;
+    uint32_t most = 0;
+    switch (plan->source_sample) {
+    case LENSPROF_SAMPLE_U8:
+        for (uint32_t i = 0; i < pixels; i++) { /* alpha is the last byte; so written, compilers vectorise it */
+            uint32_t pixel;
+            memcpy(&pixel, from + 4 * i, sizeof pixel);
+            const uint32_t a = pixel & 0xff, b = pixel >> 8 & 0xff, c = pixel >> 16 & 0xff;
+            const uint32_t larger = a > b ? a : b, of_three = larger > c ? larger : c;
+            most = of_three > most ? of_three : most;
+        }
+        return (float)most;
+    case LENSPROF_SAMPLE_U16:
+        for (uint32_t i = 0; i < r->count; i++) most = (i & 3) != 3 && codes[i] > most ? codes[i] : most;
+        return (float)most;
+    case LENSPROF_SAMPLE_F32:
+        for (uint32_t i = 0; i < r->count; i++) largest = (i & 3) != 3 && values[i] > largest ? values[i] : largest;
+        return largest;
+    default: return 1.0f; /* halves, as below */
+    }
+}
+#endif
+
 /* The largest of the codes or values of a run; 0 if all are NaN. Written so that compilers vectorise it. */
 static float largest_of(const lensprof_plan *plan, const run *r) {
     const uint16_t *codes = (const uint16_t *)(const void *)r->from;
     const float *values = (const float *)(const void *)r->from;
     uint8_t most8 = 0;
     uint16_t most16 = 0;
+#if LANES > 1
+    if (plan->samples > plan->channels) return largest_colour(plan, r);
+#endif
     switch (plan->source_sample) {
     case LENSPROF_SAMPLE_U8:
         for (uint32_t i = 0; i < r->count; i++) most8 = r->from[i] > most8 ? r->from[i] : most8;

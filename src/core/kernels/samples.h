@@ -138,6 +138,12 @@ ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, con
 
 static void take_alpha(const lensprof_plan *plan, const uint8_t *from, uint32_t count, strip *s) {
     const uint32_t bytes = lensprof_sample_type_bytes(plan->source_sample);
+#if LANES > 1
+    if (bytes == 1 && plan->samples == 4) {
+        for (uint32_t i = 0; i < count; i++) s->alpha[i][0] = from[4 * i + 3];
+        return;
+    }
+#endif
     for (uint32_t i = 0; i < count; i++) memcpy(s->alpha[i], from + ((i + 1) * plan->samples - 1) * bytes, bytes);
 }
 
@@ -167,6 +173,12 @@ static float get_value(uint32_t sample, const uint8_t *p) {
 /* Unchanged, converted if the types differ. */
 static void give_alpha(const lensprof_plan *plan, const strip *s, uint8_t *to, uint32_t count) {
     const uint32_t bytes = lensprof_sample_type_bytes(plan->target_sample);
+#if LANES > 1
+    if (bytes == 1 && plan->samples == 4 && plan->source_sample == plan->target_sample) {
+        for (uint32_t i = 0; i < count; i++) to[4 * i + 3] = s->alpha[i][0];
+        return;
+    }
+#endif
     for (uint32_t i = 0; i < count; i++) {
         uint8_t *p = to + ((i + 1) * plan->samples - 1) * bytes;
         if (plan->source_sample == plan->target_sample)
