@@ -162,7 +162,7 @@ docs-update: ## write generated pages and the outputs in the tutorials again
 	python3 -B docs/tools/schema.py .
 	python3 -B docs/tools/draw_gamma.py docs/explanation/gamma.svg
 	python3 -B tests/docs/run_tutorials.py --build build --python "$$(sed -n 's/^LENSPROF_PYTHON_WITH_NUMPY:INTERNAL=//p' build/CMakeCache.txt)" \
-		--update docs/tutorials/*.md docs/howto/hugin-project.md
+		--update docs/tutorials/*.md docs/howto/hugin-project.md docs/howto/your-lens-*.md
 
 clean: ## remove build/
 	rm -rf build

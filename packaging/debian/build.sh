@@ -35,7 +35,7 @@ inside() { chroot "$build/tree" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/b
 try_packages() {
     ls "$build"/lensprof_"$version"*.deb >/dev/null 2>&1 || { echo "build.sh: there are no packages; run it without --try first" >&2; exit 1; }
     if [ ! -e "$build/minimal.tar" ]; then
-        mmdebstrap --quiet --variant=minbase --mode=root bookworm "$build/minimal.tar.part" ||
+        mmdebstrap --quiet --format=tar --variant=minbase --mode=root bookworm "$build/minimal.tar.part" ||
             { echo "build.sh: Debian 12 is not served here" >&2; exit 77; }
         mv "$build/minimal.tar.part" "$build/minimal.tar"
     fi
