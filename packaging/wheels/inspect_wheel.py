@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from typing import NamedTuple
 
 import lief
 
@@ -23,10 +24,32 @@ SYSTEM_LIBRARIES = {
     "win": {"KERNEL32.dll", "ntdll.dll", "ADVAPI32.dll"},
 }  # fmt: skip
 MACHINES = {"x86_64": ("X86_64", "AMD64"), "aarch64": ("AARCH64",), "arm64": ("ARM64",), "amd64": ("AMD64",)}
-FILES = ("lensprof/__init__.py", "lensprof/_abi.py", "lensprof/py.typed")
-METADATA = ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE", "licenses/NOTICE", "licenses/nlopt/COPYING",
-            "licenses/nlopt/slsqp-COPYRIGHT", "licenses/sqlite/LICENSE.txt", "licenses/eigen/LICENSE.txt",
-            "licenses/libcxx/LICENSE.TXT", "licenses/pugixml/LICENSE.md", "sboms/lensprof.cdx.json")  # fmt: skip
+COMMON = ("licenses/LICENSE", "licenses/NOTICE", "licenses/sqlite/LICENSE.txt", "licenses/eigen/LICENSE.txt",
+          "licenses/libcxx/LICENSE.TXT", "licenses/pugixml/LICENSE.md", "METADATA", "WHEEL", "RECORD")  # fmt: skip
+INSIDE = {"sqlite", "pugixml", "eigen", "nlohmann", "libcxx", "libcxxabi", "libunwind", "compiler-rt"}
+
+
+class Package(NamedTuple):
+    """What a wheel of this name has: files, those of dist-info, libraries inside, exports, and other wheels' libraries."""
+
+    folder: str
+    files: tuple[str, ...]
+    info: tuple[str, ...]
+    inside: set[str]
+    exports: str
+    needs: set[str]
+
+
+PACKAGES = {
+    "lensprof": Package("lensprof/", ("__init__.py", "_abi.py", "py.typed"),
+                        (*COMMON, "licenses/nlopt/COPYING", "licenses/nlopt/slsqp-COPYRIGHT", "sboms/lensprof.cdx.json"),
+                        INSIDE | {"nlopt"}, "exported_symbols.txt", set()),
+    "lensprof_photo": Package("lensprof_photo/", ("__init__.py",),
+                              (*COMMON, "licenses/opencv/LICENSE", "licenses/libjpeg-turbo/LICENSE.md", "licenses/libpng/LICENSE",
+                               "licenses/libtiff/COPYRIGHT", "licenses/zlib/LICENSE", "sboms/lensprof-photo.cdx.json"),
+                              INSIDE | {"opencv", "libjpeg-turbo", "libpng", "libtiff", "zlib"}, "exported_photo_symbols.txt",
+                              {"liblensprof.so"}),
+}  # fmt: skip
 
 
 def kind_of(tag: str) -> str:
@@ -54,9 +77,9 @@ def needed(library: lief.Binary) -> set[str]:
     return {getattr(entry, "name", entry) for entry in library.libraries}
 
 
-def faults_of_library(library: lief.Binary, tag: str) -> list[str]:
+def faults_of_library(library: lief.Binary, tag: str, package: Package) -> list[str]:
     faults, kind = [], kind_of(tag)
-    lines = (ROOT / "tests/lint/exported_symbols.txt").read_text().splitlines()
+    lines = (ROOT / "tests/lint" / package.exports).read_text().splitlines()
     wanted = {line for line in lines if not line.startswith("#")}
     found = exported(library)
     if isinstance(library, lief.MachO.Binary):  # zig's linker has no list of exports: what C++ declares visible stays
@@ -64,7 +87,7 @@ def faults_of_library(library: lief.Binary, tag: str) -> list[str]:
     if found != wanted:
         faults.append(f"exports: missing {sorted(wanted - found)[:5]}, too many {sorted(found - wanted)[:5]}")
     foreign = {name for name in needed(library)
-               if name not in SYSTEM_LIBRARIES[kind] and not name.startswith("api-ms-win-crt-")}  # fmt: skip
+               if name not in SYSTEM_LIBRARIES[kind] | package.needs and not name.startswith("api-ms-win-crt-")}  # fmt: skip
     if foreign:
         faults.append(f"needs {sorted(foreign)}, which such systems need not have")
     processor = next(names for word, names in MACHINES.items() if tag.endswith(word))
@@ -78,20 +101,20 @@ def faults_of_library(library: lief.Binary, tag: str) -> list[str]:
 def faults_of(path: pathlib.Path) -> list[str]:
     wheel = zipfile.ZipFile(path)
     names = set(wheel.namelist())
-    version, tags = path.name.split("-")[1], path.stem.split("-")[-1].split(".")
-    info = f"lensprof-{version}.dist-info/"
-    faults = [f"{name} is missing" for name in (*FILES, *(info + name for name in METADATA)) if name not in names]
-    libraries = [name for name in names if name.startswith("lensprof/") and not name.endswith((".py", "py.typed"))]
+    name, version, tags = *path.name.split("-")[:2], path.stem.split("-")[-1].split(".")
+    package, info = PACKAGES[name], f"{name}-{version}.dist-info/"
+    wanted_files = [package.folder + file for file in package.files] + [info + file for file in package.info]
+    faults = [f"{file} is missing" for file in wanted_files if file not in names]
+    libraries = [file for file in names if file.startswith(package.folder) and not file.endswith((".py", "py.typed"))]
     if len(libraries) != 1:
         return faults + [f"has the files {libraries}, and not one library"]
-    bill = json.loads(wheel.read(info + "sboms/lensprof.cdx.json"))
+    bill = json.loads(wheel.read(info + package.info[-1]))
     inside = {part["name"] for part in bill["components"]}
-    wanted = {"nlopt", "sqlite", "pugixml", "eigen", "nlohmann", "libcxx", "libcxxabi", "libunwind", "compiler-rt"}
-    wanted |= {"mingw-w64"} if kind_of(tags[0]) == "win" else set()
+    wanted = package.inside | ({"mingw-w64"} if kind_of(tags[0]) == "win" else set())
     if inside != wanted:
         faults.append(f"the bill of materials names {sorted(inside)}, and not {sorted(wanted)}")
     library = lief.parse(list(wheel.read(libraries[0])))
-    faults += faults_of_library(library, tags[0])
+    faults += faults_of_library(library, tags[0], package)
     if kind_of(tags[0]) == "linux":  # the versions of the symbols of glibc
         shown = subprocess.run([sys.executable, "-m", "auditwheel", "show", str(path)], capture_output=True, text=True)
         if not any(f'"{tag}"' in shown.stdout for tag in tags):

@@ -119,7 +119,9 @@ def make(zig: pathlib.Path, target: str, common: pathlib.Path, folder: pathlib.P
     environment = {**os.environ, "ZIG_LOCAL_CACHE_DIR": str(build / "cache")}
     with open(build / "log.txt", "w") as log:
         for command in (["cmake", "-S", source, "-B", build, *[f"-D{name}={value}" for name, value in defines.items()]],
-                        ["cmake", "--build", build, "--parallel", os.cpu_count()], ["cmake", "--install", build]):  # fmt: skip
+                        ["cmake", "--build", build, "--parallel", os.cpu_count()], ["cmake", "--install", build],
+                        # Modules of OpenCV that are not built would use these.
+                        ["cmake", "--build", build, "--target", *(part[2] for part in PARTS)]):  # fmt: skip
             if subprocess.run([str(word) for word in command], stdout=log, stderr=subprocess.STDOUT, env=environment).returncode:
                 sys.exit(f"pictures.py: OpenCV for {target}: cannot be built; read {build / 'log.txt'}")
     ready.mkdir()

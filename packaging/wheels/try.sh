@@ -73,6 +73,29 @@ debian() { # SUITE
         tail -3 /work/tests.txt'
     exercised "$1 (Python $version)" "$folder/work/exercised.txt" "$root/packaging/wheels/exercised.txt"
     echo "$1: installed, exercised and tested in $((SECONDS - begun)) s"
+    if ls "$root"/dist/lensprof_photo-*.whl >/dev/null 2>&1 && [ -x "$root/build/lensprof" ]; then photo "$1" "$folder"; fi
+}
+
+# photo WHERE FOLDER: a folder of pictures, with what pip installs alone; the true values are those that they were rendered with.
+photo() {
+    local begun=$SECONDS
+    (cd "$2/work" && "$root/build/lensprof" simulate -o pictures --size 640x480 --set mean-ev=-0.8 >/dev/null)
+    chroot "$2" sh -e -c '
+        cd /work
+        export LANG=C.UTF-8
+        empty/bin/pip install --quiet --no-index --find-links dist --find-links links "lensprof[photo]"
+        empty/bin/python - <<PYTHON
+import lensprof as lp
+calibration = lp.calibrate("pictures")
+light = calibration.profiles[0].vignetting[0].eval(1.0)
+assert calibration.usable and abs(light - 0.66) < 0.03, (calibration.usable, light)
+picture = lp.read_picture("pictures/img000.png")
+lp.write_picture("copy.jpg", picture.pixels, like=picture)
+lp.write_picture("copy.tif", picture.pixels, like=picture)
+assert (lp.read_picture("copy.tif").pixels == picture.pixels).all() and lp.read_picture("copy.jpg").metadata.key.lens == "Simulated Lens"
+print(f"calibrated {len(calibration.exposures)} pictures, light in the corner {light:.3f}")
+PYTHON'
+    echo "$1, photograph library: installed and tried in $((SECONDS - begun)) s"
 }
 
 # What the examples print with the library of this machine's build.
@@ -152,9 +175,16 @@ unit() {
     [ "$failed" = 0 ]
 }
 
-musl() { unit musl x86_64-linux-musl musllinux /lib/ld-musl-x86_64.so.1; }
+musl() {
+    [ -e /lib/ld-musl-x86_64.so.1 ] || { echo "try.sh: musl is not installed (packages-platforms.txt)" >&2; exit 77; }
+    unit musl x86_64-linux-musl musllinux /lib/ld-musl-x86_64.so.1
+}
 
-windows() { WINEDEBUG=-all WINEPREFIX=$build/wine unit windows x86_64-windows-gnu win_amd64 wine64; }
+windows() {
+    PATH=$PATH:/usr/lib/wine # where Debian has it
+    command -v wine64 >/dev/null || { echo "try.sh: wine64 is not installed (packages-platforms.txt)" >&2; exit 77; }
+    WINEDEBUG=-all WINEPREFIX=$build/wine unit windows x86_64-windows-gnu win_amd64 wine64
+}
 
 arm64() {
     tree bookworm arm64
