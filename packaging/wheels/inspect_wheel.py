@@ -106,8 +106,9 @@ def faults_of(path: pathlib.Path) -> list[str]:
     wanted_files = [package.folder + file for file in package.files] + [info + file for file in package.info]
     faults = [f"{file} is missing" for file in wanted_files if file not in names]
     libraries = [file for file in names if file.startswith(package.folder) and not file.endswith((".py", "py.typed"))]
-    if len(libraries) != 1:
-        return faults + [f"has the files {libraries}, and not one library"]
+    ending = {"macos": ".dylib", "win": ".dll"}.get(kind_of(tags[0]), ".so")
+    if libraries != [f"{package.folder}lib{name.replace('_', '-')}{ending}"]:  # the names that _library.py looks for
+        return faults + [f"has the files {libraries}, and not one library of the name that the package loads"]
     bill = json.loads(wheel.read(info + package.info[-1]))
     inside = {part["name"] for part in bill["components"]}
     wanted = package.inside | ({"mingw-w64"} if kind_of(tags[0]) == "win" else set())

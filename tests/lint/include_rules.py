@@ -108,7 +108,7 @@ ROOMS = {
 ROOM_HEADERS = {
     "src/photo/system": SYSTEM,
     "src/photo/calibration": {"Eigen/*"},  # pedestal.cpp
-    "src/photo/registration": {"Eigen/*", "opencv2/*", "immintrin.h"},  # nearest_features.cpp
+    "src/photo/registration": {"Eigen/*", "opencv2/*", "cpuid.h", "immintrin.h"},  # nearest_features.cpp
     "src/photo/reconstruction": {"sqlite3.h"},
     "src/photo/video": {"Eigen/*", "libavcodec/*", "libavformat/*", "libavutil/*", "libswscale/*", "opencv2/*"},
     "src/cli/fitting": {"zip.h"},

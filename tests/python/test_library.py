@@ -8,6 +8,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
 
 import lensprof as lp
 from lensprof import _abi, _library
@@ -24,6 +25,12 @@ def run_python(code, **environment):
 
 
 class Finding(unittest.TestCase):
+    def test_file_names_of_the_wheels(self):
+        """Those that packaging/wheels/inspect_wheel.py requires."""
+        for system, name in (("win32", "liblensprof.dll"), ("darwin", "liblensprof.dylib"), ("linux", "liblensprof.so")):
+            with unittest.mock.patch.object(_library.sys, "platform", system):
+                self.assertIn(name, _library._file_names())
+
     def test_variable_that_names_no_library(self):
         result = run_python("import lensprof", LENSPROF_LIBRARY="/nowhere/liblensprof.so")
         self.assertIn("ImportError: LENSPROF_LIBRARY=/nowhere/liblensprof.so: cannot be loaded", result.stderr)

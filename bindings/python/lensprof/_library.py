@@ -25,7 +25,7 @@ H = TypeVar("H", bound="Handle")
 
 def _file_names(name: str = "lensprof") -> list[str]:
     if sys.platform == "win32":
-        return [f"{name}.dll"]
+        return [f"lib{name}.dll", f"{name}.dll"]  # wheels have the first, as MinGW names it
     if sys.platform == "darwin":
         return [f"lib{name}.0.3.dylib", f"lib{name}.dylib"]
     return [f"lib{name}.so.0.3", f"lib{name}.so"]

@@ -103,9 +103,17 @@ struct JpegWriter {
 
 [[noreturn]] void fail_reading(const std::string &path, const JpegState &state) {
     stop_if_cancelled();
-    static const int unsupported[] = {JERR_BAD_PRECISION,       JERR_SOF_UNSUPPORTED,    JERR_NOT_COMPILED,
-                                      JERR_ARITH_NOTIMPL,       JERR_CONVERSION_NOTIMPL, JERR_CCIR601_NOTIMPL,
-                                      JERR_FRACT_SAMPLE_NOTIMPL};
+    static const int unsupported[] = {
+#if JPEG_LIB_VERSION < 70  // later ones decode it
+        JERR_ARITH_NOTIMPL,
+#endif
+        JERR_BAD_PRECISION,
+        JERR_SOF_UNSUPPORTED,
+        JERR_NOT_COMPILED,
+        JERR_CONVERSION_NOTIMPL,
+        JERR_CCIR601_NOTIMPL,
+        JERR_FRACT_SAMPLE_NOTIMPL
+    };
     if (state.manager.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
     constexpr int lossless_frame = 0xf7;  // SOF55 of ITU-T T.87
     if (state.manager.msg_code == JERR_UNKNOWN_MARKER && state.manager.msg_parm.i[0] == lossless_frame)

@@ -4,6 +4,7 @@
 
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define LENSPROF_NEAREST_VECTORS
+#include <cpuid.h>
 #include <immintrin.h>
 #endif
 
@@ -85,12 +86,17 @@ struct Avx2 {
 };
 
 // The same, with one instruction that multiplies, adds and accumulates.
+#ifdef LENSPROF_EVEX512  // clang 18 to 20: registers of 512 bits are an option of their own
+#define AVX512 "avx512f,avx512vnni,evex512"
+#else
+#define AVX512 "avx512f,avx512vnni"
+#endif
 struct Avx512 {
     static constexpr int lanes = 16, rows_at_once = 8;
     static constexpr __mmask16 all = 0xffff;
 
-    __attribute__((target("avx512f,avx512vnni"))) static void
-    find(const int32_t (*rows)[elements], const std::vector<int32_t> &packed, InLanes<lanes> *found) {
+    __attribute__((target(AVX512))) static void find(const int32_t (*rows)[elements],
+                                                     const std::vector<int32_t> &packed, InLanes<lanes> *found) {
         __m512i best[rows_at_once], next[rows_at_once], group_of_best[rows_at_once];
         for (int r = 0; r < rows_at_once; r++) best[r] = next[r] = group_of_best[r] = _mm512_set1_epi32(-1);
         const int groups = static_cast<int>(packed.size()) / (lanes * elements);
@@ -154,14 +160,27 @@ std::vector<NearestFeatures> nearest_plainly(const int16_t *a, int count_a, cons
     return nearest;
 }
 
+#ifdef LENSPROF_NEAREST_VECTORS
+// Whether processor and operating system have AVX2, or AVX-512 with VNNI. As in core: the compilers' own query needs a
+// library that not every one has.
+bool has_vectors(bool wide) {
+    constexpr uint32_t osxsave = 1u << 27, avx2 = 1u << 5, avx512f = 1u << 16, vnni = 1u << 11;
+    uint32_t a, b, c, d, low, high;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & osxsave)) return false;
+    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    const uint32_t state = wide ? 0xe6 : 0x06;  // of the registers that the system saves
+    if ((low & state) != state || !__get_cpuid_count(7, 0, &a, &b, &c, &d)) return false;
+    return wide ? (b & avx512f) && (c & vnni) : (b & avx2) != 0;
+}
+#endif
+
 }  // namespace
 
 std::vector<NearestKernel> nearest_kernels() {
     std::vector<NearestKernel> kernels;
 #ifdef LENSPROF_NEAREST_VECTORS
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vnni"))
-        kernels.push_back({"avx512vnni", nearest_by<Avx512>});
-    if (__builtin_cpu_supports("avx2")) kernels.push_back({"avx2", nearest_by<Avx2>});
+    if (has_vectors(true)) kernels.push_back({"avx512vnni", nearest_by<Avx512>});
+    if (has_vectors(false)) kernels.push_back({"avx2", nearest_by<Avx2>});
 #endif
     kernels.push_back({"plain", nearest_plainly});
     return kernels;

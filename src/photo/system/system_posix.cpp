@@ -14,6 +14,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace lensprof::system {
@@ -81,8 +82,9 @@ int create_file(const std::string &path, unsigned permissions, Lifetime lifetime
 }
 
 int create_file_in_memory(std::string &path) {
-#ifdef MFD_CLOEXEC
-    const int file = memfd_create("lensprof", MFD_CLOEXEC);
+#ifdef SYS_memfd_create  // the C library has a function for it from glibc 2.27 on
+    constexpr unsigned close_on_exec = 1;
+    const int file = static_cast<int>(syscall(SYS_memfd_create, "lensprof", close_on_exec));
     if (file >= 0) path = "/proc/self/fd/" + std::to_string(file);
     return file;
 #else
