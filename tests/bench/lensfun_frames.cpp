@@ -18,7 +18,8 @@ int main(int count, char **words) {
     for (int i = 0; i < 3; i++) falloff.Terms[i] = static_cast<float>(std::atof(words[3 + i]));
     lf_lens_add_calib_vignetting(lens, &falloff);
     lfModifier *modifier = lf_modifier_new(lens, 1.0f, width, height);
-    lf_modifier_initialize(modifier, lens, LF_PF_U8, 50.0f, 2.8f, 1000.0f, 1.0f, LF_RECTILINEAR, LF_MODIFY_VIGNETTING, 0);
+    lf_modifier_initialize(modifier, lens, LF_PF_U8, 50.0f, 2.8f, 1000.0f, 1.0f, LF_RECTILINEAR, LF_MODIFY_VIGNETTING,
+                           0);
     std::vector<unsigned char> frame(size_t(width) * size_t(height) * 4);
     while (std::fread(frame.data(), 1, frame.size(), stdin) == frame.size()) {
         lf_modifier_apply_color_modification(modifier, frame.data(), 0, 0, width, height,
