@@ -371,7 +371,7 @@ class TestMissing(unittest.TestCase):
             environment = {**os.environ, "LENSPROF_LIBRARY": str(alone)}
             environment.pop("LENSPROF_PHOTO_LIBRARY", None)
             done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
-            self.assertIn("is not installed; install lensprof with it", done.stdout, done.stderr)
+            self.assertIn("is not installed; install it (`pip install", done.stdout, done.stderr)
 
 
 if __name__ == "__main__":
