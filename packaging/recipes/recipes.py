@@ -65,7 +65,7 @@ def faults(version: str) -> list[str]:
 
 def options_of(name: str) -> list[str]:
     """What a recipe gives CMake, without the variables of its own tool."""
-    return [word for word in re.findall(r"-D[A-Z_]+=[\w.]+", (HERE / name).read_text()) if "CMAKE_" not in word]
+    return [word for word in re.findall(r"-D[A-Z0-9_]+=[\w.]+", (HERE / name).read_text()) if "CMAKE_" not in word]
 
 
 def try_recipes(archive: pathlib.Path) -> None:

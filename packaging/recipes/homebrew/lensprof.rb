@@ -3,7 +3,7 @@ class Lensprof < Formula
   desc "Camera response, vignetting and exposure from overlapping pictures"
   homepage "https://pypi.org/project/lensprof"
   url "https://pypi.org/packages/source/l/lensprof/lensprof-0.3.0.tar.gz"
-  sha256 "0000000000000000000000000000000000000000000000000000000000000000"
+  sha256 "f26ebbffe566454958c88ddbb11c31940fc2d55999d84de0882f611f7a6c262c"
   license "MIT"
 
   depends_on "cli11" => :build
