@@ -76,7 +76,7 @@ debian() { # SUITE
     if ls "$root"/dist/lensprof_photo-*.whl >/dev/null 2>&1 && [ -x "$root/build/lensprof" ]; then photo "$1" "$folder"; fi
 }
 
-# photo WHERE FOLDER: a folder of pictures, with what pip installs alone; the true values are those that they were rendered with.
+# photo WHERE FOLDER: a folder of pictures, with what pip installs alone; 0.665 is what the build of this machine gives.
 photo() {
     local begun=$SECONDS
     (cd "$2/work" && "$root/build/lensprof" simulate -o pictures --size 640x480 --set mean-ev=-0.8 >/dev/null)
@@ -88,7 +88,7 @@ photo() {
 import lensprof as lp
 calibration = lp.calibrate("pictures")
 light = calibration.profiles[0].vignetting[0].eval(1.0)
-assert calibration.usable and abs(light - 0.66) < 0.03, (calibration.usable, light)
+assert calibration.usable and abs(light - 0.665) < 0.02, (calibration.usable, light)
 picture = lp.read_picture("pictures/img000.png")
 lp.write_picture("copy.jpg", picture.pixels, like=picture)
 lp.write_picture("copy.tif", picture.pixels, like=picture)
