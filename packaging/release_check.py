@@ -15,6 +15,10 @@ import re
 import subprocess
 import sys
 
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / folder) for folder in ("wheels", "recipes")]
+import recipes  # noqa: E402
+import sources  # noqa: E402
+
 # Where a version stands, and the pattern of it.
 VERSIONS = (
     ("pyproject.toml", r'"lensprof-photo==([\d.]+)"'),
@@ -47,8 +51,7 @@ class Release:
 
     def __init__(self, root: pathlib.Path, dist: pathlib.Path) -> None:
         self.root, self.dist = root, dist
-        header = (root / "include/lensprof/base.h").read_text()
-        self.version = ".".join(re.findall(r"LENSPROF_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header)[:3])
+        self.version = sources.version_of_lensprof(root)
 
     def tree_is_clean(self) -> list[str]:
         status = subprocess.run(["git", "-C", self.root, "status", "--porcelain"], capture_output=True, text=True)
@@ -144,10 +147,10 @@ class Release:
         sdist = self.dist / f"lensprof-{self.version}.tar.gz"
         if not sdist.exists():
             raise NotDone("run `make wheels`")
-        data, recipes = sdist.read_bytes(), self.root / "packaging/recipes"
-        wanted = {"conda/recipe.yaml": "sha256", "homebrew/lensprof.rb": "sha256", "vcpkg/portfile.cmake": "sha512"}
+        data, folder = sdist.read_bytes(), self.root / "packaging/recipes"
         return [f"packaging/recipes/{name}: has another hash than {sdist.name}; run `make recipes`"
-                for name, kind in wanted.items() if hashlib.new(kind, data).hexdigest() not in (recipes / name).read_text()]  # fmt: skip
+                for name, _, kind, _ in recipes.RECIPES
+                if kind and hashlib.new(kind, data).hexdigest() not in (folder / name).read_text()]  # fmt: skip
 
     def write_sums(self) -> None:
         lines = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in self.packages()]

@@ -67,7 +67,8 @@ void f0r_set_param_value(f0r_instance_t instance, f0r_param_t value, int index) 
     lens *this = instance;
     if (index == STRENGTH) {
         const double strength = *(f0r_param_double *)value;
-        if (strength != this->strength) this->strength = strength, this->is_ready = 0;
+        if (memcmp(&strength, &this->strength, sizeof strength) != 0) /* NaN equals itself, too */
+            this->strength = strength, this->is_ready = 0;
     }
     if (index != PROFILE && index != RESPONSE) return;
     const char *text = *(f0r_param_string *)value, *old = this->texts[index];

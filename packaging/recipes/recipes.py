@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The recipes of conda-forge, Homebrew and vcpkg: of this version, and with the hash of its sdist.
 
-usage: recipes.py [--dist FOLDER]      writes version and hash of FOLDER/lensprof-VERSION.tar.gz (default: dist/)
-       recipes.py --check              exit 1 if they are of another version, or cannot be read
+usage: recipes.py [--dist FOLDER]      writes version and hash of FOLDER/lensprof-VERSION.tar.gz (default: dist/); exit 1 if a
+                                       recipe cannot be read
        recipes.py --try                configures and builds the library with the options that each has, from the sdist
 """
 
@@ -19,6 +19,9 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "packaging/wheels"))
+import sources  # noqa: E402
+
 # File, then what states the version and the hash in it.
 RECIPES = (
     ("conda/recipe.yaml", r'(version: ")([\d.]+)(")', "sha256", r'(sha256: ")(\w+)(")'),
@@ -26,11 +29,6 @@ RECIPES = (
     ("vcpkg/vcpkg.json", r'("version": ")([\d.]+)(")', None, None),
     ("vcpkg/portfile.cmake", None, "sha512", r"(SHA512 )(\w+)(\n)"),
 )
-
-
-def version_of_library() -> str:
-    header = (ROOT / "include/lensprof/base.h").read_text()
-    return ".".join(re.findall(r"LENSPROF_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header)[:3])
 
 
 def set_values(archive: pathlib.Path, version: str) -> None:
@@ -46,13 +44,9 @@ def set_values(archive: pathlib.Path, version: str) -> None:
         path.write_text(text)
 
 
-def faults(version: str) -> list[str]:
+def faults() -> list[str]:
+    """What a reader of the files would refuse; release_check.py compares their versions and hashes."""
     found = []
-    for name, pattern, _, _ in RECIPES:
-        path = HERE / name
-        stated = re.findall(pattern, path.read_text()) if pattern else []
-        if pattern and [value for _, value, _ in stated] != [version]:
-            found.append(f"{path}: is of {[value for _, value, _ in stated]}, not {version}; run `make recipes`")
     try:
         json.loads((HERE / "vcpkg/vcpkg.json").read_text())
     except ValueError as error:
@@ -88,19 +82,17 @@ def try_recipes(archive: pathlib.Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Set or check the recipes of package managers.")
     parser.add_argument("--dist", type=pathlib.Path, default=ROOT / "dist")
-    parser.add_argument("--check", action="store_true")
     parser.add_argument("--try", dest="tries", action="store_true")
     options = parser.parse_args()
-    version = version_of_library()
+    version = sources.version_of_lensprof()
     archive = options.dist / f"lensprof-{version}.tar.gz"
-    if not options.check:
-        if not archive.exists():
-            sys.exit(f"recipes.py: {archive}: there is no such sdist; make it with `packaging/wheels/build.py --sdist`")
-        if options.tries:
-            try_recipes(archive)
-            return
-        set_values(archive, version)
-    found = faults(version)
+    if not archive.exists():
+        sys.exit(f"recipes.py: {archive}: there is no such sdist; make it with `packaging/wheels/build.py --sdist`")
+    if options.tries:
+        try_recipes(archive)
+        return
+    set_values(archive, version)
+    found = faults()
     print("\n".join(found) or f"recipes: of {version}", file=sys.stderr if found else sys.stdout)
     sys.exit(bool(found))
 

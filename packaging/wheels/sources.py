@@ -109,8 +109,8 @@ def component(name: str, version: str, license_name: str, url: str) -> dict:
     return {"type": "library", "bom-ref": name, "name": name, "version": version, "licenses": [stated], "purl": url}
 
 
-def version_of_lensprof() -> str:
-    header = (ROOT / "include/lensprof/base.h").read_text()
+def version_of_lensprof(root: pathlib.Path = ROOT) -> str:
+    header = (root / "include/lensprof/base.h").read_text()
     return ".".join(re.findall(r"LENSPROF_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header)[:3])
 
 

@@ -47,12 +47,10 @@ static inline float near_white_code(const lensprof_plan *plan, float unit) {
  * `step`. */
 static void approach_white(const lensprof_plan *plan, strip *s, uint32_t count, uint32_t pitch, uint32_t step,
                            float unit) {
-#if LANES > 1
-    const float near_white = near_white_code(plan, unit);
-#endif
     for (uint32_t i = 0; i < count; i++) {
         const float *value = s->light + i * step;
 #if LANES > 1
+        const float near_white = near_white_code(plan, unit);
         if (!(value[0] > near_white) && !(value[pitch] > near_white) && !(value[2 * pitch] > near_white)) continue;
 #endif
         float *gain = s->factor + i * step, brightest = 0.0f, darkest = 1.0f, largest = 0.0f;
