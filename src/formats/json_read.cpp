@@ -48,7 +48,9 @@ uint32_t read_word(const JsonValue &value, const char *const (&words)[count]) {
     const std::string_view text = value.text();
     for (uint32_t i = 0; i < count; i++)
         if (text == words[i]) return i;
-    value.fail("is " + in_quotes(text) + ", not one of " + words[0] + " to " + words[count - 1] + "; correct it");
+    std::string known = words[0];
+    for (size_t i = 1; i < count; i++) known += std::string(i + 1 < count ? ", " : " or ") + words[i];
+    value.fail("is " + in_quotes(text) + ", not " + known + "; correct it");
 }
 
 void read_key(const JsonValue &object, lensprof_profile_key &key) {

@@ -1,6 +1,5 @@
 #include "formats/code/code_text.hpp"
 
-#include <charconv>
 #include <cmath>
 
 #include <lensprof/base.h>
@@ -77,21 +76,6 @@ std::vector<std::string> head_lines(const lensprof_profile &profile, std::string
     return {std::string("lensprof ") + lensprof_version() + ": " + std::string(what),
             "Profile: " + (name.empty() ? "no camera and lens named" : comment_text(name)),
             std::string("Pictures: ") + kPictures[profile.key.processing]};
-}
-
-std::string float_text(double value) {
-    char buffer[32];
-    const float single = static_cast<float>(value);
-    const auto result = std::to_chars(buffer, buffer + sizeof buffer, single == 0.0f ? 0.0f : single);  // no "-0"
-    const std::string text(buffer, result.ptr);
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-std::string fixed_text(double value) {
-    char buffer[400];
-    const auto result =
-        std::to_chars(buffer, buffer + sizeof buffer, value == 0.0 ? 0.0 : value, std::chars_format::fixed);
-    return std::string(buffer, result.ptr);
 }
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Numbers and comments of source code.
+// Comments of source code.
 #pragma once
 
 #include <string>
@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <lensprof/profile.h>
+
+#include "formats/text/numbers.hpp"
 
 namespace lensprof {
 
@@ -18,11 +20,5 @@ std::string name_of_profile(const lensprof_profile_key &key);
 
 // The head of a file, without the signs of a comment: what it holds, and which profile.
 std::vector<std::string> head_lines(const lensprof_profile &profile, std::string_view what);
-
-// Shortest decimal form that reads back as the same float, with a point or an exponent: "1.0".
-std::string float_text(double value);
-
-// Shortest decimal form without an exponent that reads back as the same double.
-std::string fixed_text(double value);
 
 }  // namespace lensprof

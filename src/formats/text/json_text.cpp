@@ -1,7 +1,6 @@
 #include "formats/text/json_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -267,12 +266,10 @@ void JsonWriter::name(const char *name) {
 void JsonWriter::number(double value) {
     if (!std::isfinite(value)) return word("null");
     if (style_ == kIndented) return word(nlohmann::json(value).dump().c_str());
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    const std::string_view digits(buffer, static_cast<size_t>(end - buffer));
+    const std::string digits = value == 0.0 && std::signbit(value) ? "-0" : number_text(value);
     separate();
     all_ += digits;
-    if (digits.find_first_of(".e") == std::string_view::npos) all_ += ".0";
+    if (digits.find_first_of(".e") == std::string::npos) all_ += ".0";
 }
 
 void JsonWriter::known(double value) {

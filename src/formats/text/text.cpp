@@ -1,7 +1,6 @@
 #include "formats/text/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -55,22 +54,6 @@ std::string_view next_word(std::string_view &line) {
     return word;
 }
 
-bool read_number(std::string_view text, double &value) {
-    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-    double number;
-    auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return false;
-    value = number;
-    return true;
-}
-
-bool read_whole(std::string_view text, double low, double high, double &value) {
-    double number;
-    if (!read_number(text, number) || number != std::floor(number) || number < low || number > high) return false;
-    value = number;
-    return true;
-}
-
 size_t find_not_utf8(std::string_view text) {
     size_t position = 0;
     const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
@@ -101,12 +84,6 @@ void put_name(char *field, size_t capacity, const char *name) {
     for (char *c = field; *c; c++)
         if ((*c > 0 && *c < ' ') || *c == 127) *c = '?';
     if (find_not_utf8(field) < std::string_view(field).size()) std::memset(field, 0, capacity);
-}
-
-std::string number_text(double value) {
-    char buffer[32];
-    auto result = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value);  // no "-0"
-    return std::string(buffer, result.ptr);
 }
 
 lensprof_status copy_bytes(std::string_view source, void *data, size_t capacity, size_t *count,

@@ -9,6 +9,7 @@
 #include <lensprof/base.h>
 
 #include "falloff/failure.hpp"
+#include "formats/text/numbers.hpp"
 
 namespace lensprof {
 
@@ -67,20 +68,11 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
 // Next word between blanks; moves `line` past it. Empty at the end of the line.
 std::string_view next_word(std::string_view &line);
 
-// The whole of `text` as a finite number, whatever the process locale.
-bool read_number(std::string_view text, double &value);
-
-// The same as a whole number within [low, high].
-bool read_whole(std::string_view text, double low, double high, double &value);
-
 // Offset of the first byte that is not part of well-formed UTF-8; the size if all of it is.
 size_t find_not_utf8(std::string_view text);
 
 // Copies to a text field of a value struct; what does not fit is cut between characters.
 void put_text(char *field, size_t capacity, std::string_view text);
-
-// Shortest decimal form that reads back as the same number.
-std::string number_text(double value);
 
 // The same for a name given by the caller, e.g. of a file: control characters as '?', empty if it is not UTF-8.
 void put_name(char *field, size_t capacity, const char *name);
