@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help wheels platforms deb deb-try recipes release-check deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-frei0r bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help page wheels platforms deb deb-try recipes release-check deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-frei0r bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -100,8 +100,14 @@ recipes: ## set version and hash in the recipes of conda-forge, Homebrew and vcp
 release-check: ## what must hold before a release: versions, CHANGELOG, ABI, wheels, sources, hashes
 	packaging/release_check.py
 
-platforms: wheels build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets
+page: ## make the page in the browser, one file: build/page/lensprof.html
+	@cmake/install-packages.sh packages-wheels.txt
+	@cmake/install-packages.sh packages-page.txt
+	bindings/web/build.sh
+
+platforms: wheels page build ## run the wheels on other systems (Debian 11 and 13, arm64, musl, Windows), languages, fleets, the page
 	@cmake/install-packages.sh packages-platforms.txt
+	tests/browser/run.sh build/page/lensprof.html build/lensprof || [ $$? = 77 ]
 	packaging/wheels/try.sh || [ $$? = 77 ]
 	tests/bindings/run.sh build/liblensprof.so || [ $$? = 77 ]
 	tests/python/fleet.sh
@@ -143,12 +149,13 @@ lint: test-deps ## format, cppcheck, clang's warnings and clang-tidy over all so
 format: ## format C and C++ with .clang-format (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i
 
-docs: ## the manual with the API reference: build/docs/index.html (packages-docs.txt)
+docs: ## the manual with the API reference, and the page if it was made: build/docs/index.html (packages-docs.txt)
 	@cmake/install-packages.sh packages-docs.txt
 	mkdir -p build && rm -rf build/docs build/docs-api
 	doxygen docs/Doxyfile
 	mkdocs build --quiet --strict
 	mv build/docs-api build/docs/api
+	test ! -e build/page/lensprof.html || cp build/page/lensprof.html build/docs/
 	@echo 'open build/docs/index.html'
 
 # After a change of the program's help, its output or the schema; look at the difference before you commit it.

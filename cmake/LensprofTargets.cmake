@@ -18,6 +18,10 @@ target_compile_options(lensprof_settings INTERFACE -Wall -Wextra -Wshadow -Wpoin
 # GCC collects its garbage at 1 GB of it, and not at 128 MB: a tenth less time for the largest sources.
 target_compile_options(lensprof_settings INTERFACE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
+if(EMSCRIPTEN)
+  target_compile_options(lensprof_settings INTERFACE -fwasm-exceptions)
+  target_link_options(lensprof_settings INTERFACE -fwasm-exceptions)
+endif()
 if(LENSPROF_WERROR)
   target_compile_options(lensprof_settings INTERFACE -Werror)
 endif()

@@ -91,7 +91,7 @@ LAYERS = {
         ["photo", "threads", "fit/base/joined_sets.hpp", "fit/base/mixed_bits.hpp"],
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
-    "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h", "frei0r.h"}),
+    "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h", "frei0r.h", "nlohmann/json.hpp"}),
 }
 
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
