@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help page wheels platforms deb deb-try recipes release-check deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-frei0r bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help page wheels platforms deb deb-try recipes release-check deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-fleet bench-frei0r bench-store bench-lookup bench-knowledge bench-fields bench-online install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -66,6 +66,9 @@ bench: test-deps build ## compare accuracy and speed with other programs
 bench-apply: build ## measure how fast profiles are applied, compared with memcpy, Lensfun, OpenCV and a plain loop
 	@cmake/install-packages.sh packages-bench.txt
 	tests/bench/apply.sh
+
+bench-fleet: build ## measure lensprof.fleet: a plain loop, and Dask with one and two workers
+	tests/bench/fleet.sh
 
 bench-frei0r: build ## measure the video filter in FFmpeg, compared with no filter, FFmpeg's vignette and liblensfun
 	@cmake/install-packages.sh packages-test.txt
