@@ -28,8 +28,7 @@ template <class Number>
 std::string shortest(Number value, bool is_fixed) {
     char scientific[40], fixed[400];
     int digits = 0;
-    do
-        std::snprintf(scientific, sizeof scientific, "%.*e", digits, static_cast<double>(value));
+    do std::snprintf(scientific, sizeof scientific, "%.*e", digits, static_cast<double>(value));
     while (!reads_back(scientific, value) && ++digits < 17);
     const std::string text = scientific;
     const int exponent = std::atoi(text.c_str() + text.find('e') + 1);
@@ -48,8 +47,8 @@ bool read(std::string_view text, double &value) {
 template <class Number>
 std::string shortest(Number value, bool is_fixed) {
     char buffer[400], *const end = buffer + sizeof buffer;
-    const auto result = is_fixed ? std::to_chars(buffer, end, value, std::chars_format::fixed)
-                                 : std::to_chars(buffer, end, value);
+    const auto result =
+        is_fixed ? std::to_chars(buffer, end, value, std::chars_format::fixed) : std::to_chars(buffer, end, value);
     return std::string(buffer, result.ptr);
 }
 
