@@ -40,6 +40,7 @@ VERSIONS = (
 )
 WHEELS = ("manylinux_2_17_x86_64", "manylinux_2_17_aarch64", "musllinux_1_2_x86_64", "macosx_11_0_arm64", "macosx_11_0_x86_64",
           "win_amd64")  # fmt: skip
+PHOTO_WHEELS = ("manylinux_2_17_x86_64", "manylinux_2_17_aarch64")
 
 
 class NotDone(Exception):
@@ -120,8 +121,8 @@ class Release:
         names = [path.name for path in self.packages()]
         if not names:
             raise NotDone("run `make wheels`")
-        missing = [f"no wheel for {tag}" for tag in WHEELS if not any(tag in name for name in names if name.startswith("lensprof-"))]
-        missing += [] if any(name.startswith("lensprof_photo-") for name in names) else ["no wheel of the photograph library"]
+        missing = [f"no wheel of {package} for {tag}" for package, tags in (("lensprof", WHEELS), ("lensprof_photo", PHOTO_WHEELS))
+                   for tag in tags if not any(tag in name for name in names if name.startswith(package + "-"))]  # fmt: skip
         missing += [] if any(name.endswith(".tar.gz") for name in names) else ["no sdist"]
         foreign = [f"{path.name}: is of another version" for path in sorted(self.dist.glob("lensprof*"))
                    if path not in self.packages()]  # fmt: skip

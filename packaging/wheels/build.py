@@ -2,7 +2,7 @@
 """Wheels of the Python package with the library inside, for every platform, made on one machine.
 
 usage: build.py [--check] [TARGET...]     without a TARGET, all of them; build.py --list names them
-       build.py --photo                   the photograph library, a wheel of its own for Linux x86-64
+       build.py --photo [TARGET...]       the photograph library, a wheel of its own for Linux
        build.py --sources | --sdist       only the sources of the libraries inside | only the sdist
 
 Writes dist/lensprof-VERSION.tar.gz (the sdist) and dist/*.whl, which are made from that sdist. clang of the package
@@ -11,6 +11,7 @@ bytes. --check makes each wheel twice, in two folders, and compares them.
 """
 
 import argparse
+import functools
 import hashlib
 import os
 import pathlib
@@ -45,6 +46,7 @@ TARGETS = {
     "macos-x86_64": Target("x86_64-macos.11.0", ("macosx_11_0_x86_64",)),
     "windows-x86_64": Target("x86_64-windows-gnu", ("win_amd64",)),
 }
+PHOTO_TARGETS = ("linux-x86_64", "linux-aarch64")
 
 
 def run(*command: object, **options) -> None:
@@ -125,9 +127,8 @@ def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib
     return pathlib.Path(shutil.move(path, dist / path.name))
 
 
-def photo_wheel(python: pathlib.Path, source: pathlib.Path, folder: pathlib.Path, dist: pathlib.Path) -> pathlib.Path:
+def photo_wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib.Path, dist: pathlib.Path) -> pathlib.Path:
     """That of the photograph library."""
-    name = "linux-x86_64"
     libraries = BUILD / "pictures" / name
     pictures.make(zig_program(), TARGETS[name].zig, BUILD / "sources", libraries)
     project = "packaging/photo"
@@ -153,12 +154,13 @@ def main() -> None:
     parser.add_argument("--sdist", action="store_true", help="make the sdist, and stop")
     parser.add_argument("--check", action="store_true", help="make each wheel twice, and compare the bytes")
     options = parser.parse_args()
+    known = PHOTO_TARGETS if options.photo else tuple(TARGETS)
     if options.list:
-        print("\n".join(TARGETS))
+        print("\n".join(known))
         return
-    unknown = [name for name in options.targets if name not in TARGETS]
+    unknown = [name for name in options.targets if name not in known]
     if unknown:
-        parser.error(f"{unknown[0]}: is no target; they are {', '.join(TARGETS)}")
+        parser.error(f"{unknown[0]}: is no target; they are {', '.join(known)}")
     check_machine()
     python = tools()
     if not options.sdist:
@@ -168,16 +170,13 @@ def main() -> None:
     source = sdist(python)
     if options.sdist:
         return
-    if options.photo:
-        makers = {"photo": lambda folder, dist: photo_wheel(python, source, folder, dist)}
-    else:
-        makers = {name: lambda folder, dist, name=name: wheel(python, source, name, folder, dist)
-                  for name in options.targets or TARGETS}  # fmt: skip
-    for name, make in makers.items():
-        path = make(BUILD / name, DIST)
+    make = photo_wheel if options.photo else wheel
+    for name in options.targets or known:
+        folder = f"photo-{name}" if options.photo else name
+        path = make(python, source, name, BUILD / folder, DIST)
         run(python, HERE / "inspect_wheel.py", path)
         if options.check:
-            make_twice(path, make, BUILD / "again" / name)
+            make_twice(path, functools.partial(make, python, source, name), BUILD / "again" / folder)
 
 
 if __name__ == "__main__":

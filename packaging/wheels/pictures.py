@@ -34,9 +34,9 @@ PARTS = (
     ("zlib", "Zlib", "zlib", "z", "LICENSE", ("zlib.h", "zconf.h"), r"ZLIB_VERSION \"([\d.]+)\""),
 )  # fmt: skip
 
-# Nothing that is not needed, nothing found on this machine. AVX2 is used where the processor has it.
+# Nothing that is not needed, nothing found on this machine.
 OPTIONS = {
-    "BUILD_LIST": ",".join(MODULES), "BUILD_SHARED_LIBS": "OFF", "CPU_DISPATCH": "AVX2", "CV_TRACE": "OFF",
+    "BUILD_LIST": ",".join(MODULES), "BUILD_SHARED_LIBS": "OFF", "CV_TRACE": "OFF",
     "OPENCV_PYTHON_SKIP_DETECTION": "ON", "BUILD_WITH_DEBUG_INFO": "OFF", "CMAKE_BUILD_TYPE": "Release", "ENABLE_CCACHE": "OFF",
     **{f"BUILD_{name}": "ON" for name in ("ZLIB", "PNG", "JPEG", "TIFF")},
     **{f"BUILD_{name}": "OFF" for name in ("opencv_apps", "TESTS", "PERF_TESTS", "EXAMPLES", "JAVA")},
@@ -114,7 +114,9 @@ def make(zig: pathlib.Path, target: str, common: pathlib.Path, folder: pathlib.P
     defines = {**OPTIONS, "CMAKE_TOOLCHAIN_FILE": HERE / "zig.cmake", "LENSPROF_ZIG": zig, "LENSPROF_ZIG_TARGET": target,
                "CMAKE_INSTALL_PREFIX": build / "install",
                **{f"CMAKE_{language}_FLAGS": f"-ffile-prefix-map={source}=. -ffile-prefix-map={build}=." for language in ("C", "CXX")}}  # fmt: skip
-    if target.startswith("x86_64"):
+    is_x86 = target.startswith("x86_64")
+    defines["CPU_DISPATCH"] = "AVX2" if is_x86 else ""  # is used where the processor has it
+    if is_x86:
         defines["CMAKE_ASM_NASM_COMPILER"] = shutil.which("nasm")
     environment = {**os.environ, "ZIG_LOCAL_CACHE_DIR": str(build / "cache")}
     with open(build / "log.txt", "w") as log:

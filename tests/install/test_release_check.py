@@ -31,7 +31,8 @@ class ReleaseCheck(unittest.TestCase):
         self.replace("packaging/debian/changelog", "UNRELEASED", "unstable")
         (self.root / "dist").mkdir()
         names = [f"lensprof-{self.version}-py3-none-{tag}.whl" for tag in release_check.WHEELS]
-        for name in (f"lensprof-{self.version}.tar.gz", f"lensprof_photo-{self.version}-py3-none-any.whl", *names):
+        names += [f"lensprof_photo-{self.version}-py3-none-{tag}.whl" for tag in release_check.PHOTO_WHEELS]
+        for name in (f"lensprof-{self.version}.tar.gz", *names):
             (self.root / "dist" / name).write_text(name)
 
     def replace(self, name, old, new):
@@ -87,7 +88,7 @@ class ReleaseCheck(unittest.TestCase):
         self.assertIn("lensprof-0.2.0.tar.gz: is of another version", self.faults(complete))
         for path in (self.root / "dist").glob("*win_amd64*"):
             path.unlink()
-        self.assertIn("no wheel for win_amd64", self.faults(complete))
+        self.assertIn("no wheel of lensprof for win_amd64", self.faults(complete))
         shutil.rmtree(self.root / "dist")
         with self.assertRaises(release_check.NotDone):
             self.faults(complete)
