@@ -99,8 +99,9 @@ def zig_program() -> pathlib.Path:
 
 
 def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib.Path, dist: pathlib.Path,
-          project: str = ".", more: dict[str, object] = {}) -> pathlib.Path:  # fmt: skip
-    """The wheel of a target, built in `folder`; `project`: where its pyproject.toml is."""
+          project: str = ".", pictures_folder: pathlib.Path | None = None) -> pathlib.Path:  # fmt: skip
+    """The wheel of a target, built in `folder`; `project`: where its pyproject.toml is; `pictures_folder`: what pictures.make
+    made, for the photograph library."""
     target = TARGETS[name]
     zig = zig_program()
     defines = {
@@ -110,7 +111,7 @@ def wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: pathlib
         "LENSPROF_SOURCES": BUILD / "sources",
         # No symbols, and no path of this machine.
         "CMAKE_SHARED_LINKER_FLAGS": "-s",
-        **more,
+        **({"LENSPROF_PICTURES": pictures_folder} if pictures_folder else {}),
         **{f"CMAKE_{language}_FLAGS": f"-ffile-prefix-map={source}=. -ffile-prefix-map={BUILD}=." for language in ("C", "CXX")},
     }
     settings = [f"build-dir={folder / 'build'}", "wheel.tags=" + ";".join(f"py3-none-{tag}" for tag in target.tags)]
@@ -134,7 +135,7 @@ def photo_wheel(python: pathlib.Path, source: pathlib.Path, name: str, folder: p
     project = "packaging/photo"
     for text in ("LICENSE", "NOTICE"):
         shutil.copy(source / text, source / project)
-    return wheel(python, source, name, folder, dist, project, {"LENSPROF_PICTURES": libraries})
+    return wheel(python, source, name, folder, dist, project, libraries)
 
 
 def make_twice(path: pathlib.Path, make, again: pathlib.Path) -> None:
