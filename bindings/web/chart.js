@@ -51,6 +51,7 @@ export function drawChart(curves) {
 /** "63.2 % ± 0.4 % of the light in the corner (0.66 EV)", per channel where they differ. */
 export function cornerText(curves) {
     return curves.map((points, i) => {
+        if (points.length === 0) return 'The image circle has no light at the middle of the frame';
         const [r, light, sigma] = points.at(-1);
         const place = r > 0.999 ? 'in the corner' : `at ${r.toFixed(2)} half diagonals`;
         const error = sigma === null ? '' : ` ± ${(100 * sigma).toFixed(sigma < 0.001 ? 2 : 1)} %`;

@@ -237,6 +237,7 @@ Json fit(const Json &wanted) {
     options.responses = 1;
     options.threads = 1;
     options.vignettings = wanted.value("lossy", false) ? 1 : 0;  // JPEG rounds colours over blocks of pixels
+    if (wanted.value("radial", false)) options.grid = LENSPROF_FLAT_GRID_NONE;
     std::vector<lensprof_flat_image> images;
     for (const Card &card : cards) {
         images.push_back(card.image);
@@ -263,7 +264,7 @@ Json fit(const Json &wanted) {
 }
 
 lensprof_status keep_profile(void *user, const lensprof_import_entry *entry) {
-    if (!entry->usable) return LENSPROF_OK;
+    if (!entry->usable || entry->holds == LENSPROF_HOLDS_RESPONSE) return LENSPROF_OK;
     lensprof_profile profile;
     lensprof_profile_init(&profile);
     const lensprof_status status = lensprof_profile_copy(&profile, entry->profile);
@@ -298,7 +299,8 @@ PAGE_API const char *page_add_card(const void *rgba, uint32_t width, uint32_t he
 }
 
 /* Measures the cards, each of which may have a gradient of light of its own unless the camera was rotated.
- * {"response": "linear", "key": {...}, "lossy": false} -> {"usable": true, "findings": [{"kind", "text"}]} */
+ * {"response": "linear", "key": {...}, "lossy": false, "radial": false} -> {"usable": true, "findings": [{"kind",
+ * "text"}]} */
 PAGE_API const char *page_fit(const char *options) {
     return answer([&] { return fit(Json::parse(options)); });
 }
@@ -306,6 +308,9 @@ PAGE_API const char *page_fit(const char *options) {
 /* Reads a profile file -> {"profiles": [key, ...]}. */
 PAGE_API const char *page_import(const void *data, size_t size, const char *name) {
     return answer([&]() -> Json {
+        if (lensprof_format_detect(data, size, name) == LENSPROF_FORMAT_AUTO)
+            throw std::runtime_error(
+                "is neither a picture that this page reads (JPEG, PNG, TIFF, WebP, AVIF) nor a profile");
         std::vector<lensprof_profile> read;
         lensprof_import_options options;
         lensprof_import_options_init(&options);

@@ -1,11 +1,12 @@
 // What the page shows. Files stay in the browser: the page makes no connection, and its policy forbids any.
 import {cornerText, drawChart} from './chart.js';
-import {isPicture, readPicture} from './pictures.js';
+import {bytesOf, isPicture, readPicture} from './pictures.js';
 import workerSource from 'worker';
 
 const one = id => document.getElementById(id);
 const worker = new Worker(URL.createObjectURL(new Blob([workerSource], {type: 'text/javascript'})));
 const waiting = new Map();
+const PREVIEW = 2000; // px of the longer side of a picture that is shown; the saved one is whole
 let cards = [], frame = {width: 6000, height: 4000}, picture = null, index = -1;
 
 worker.onmessage = ({data: {id, result, error}}) => {
@@ -62,16 +63,31 @@ function showCards() {
         for (const degrees of [0, 90, 180, 270]) turn.add(new Option(`camera rotated by ${degrees}°`, degrees));
         turn.value = card.rotation;
         turn.setAttribute('aria-label', `rotation of ${card.name}`);
-        turn.onchange = () => { card.rotation = Number(turn.value); };
+        turn.onchange = () => {
+            card.rotation = Number(turn.value);
+            hideResult();
+        };
         row.append(`${card.name}, ${card.width} × ${card.height} `, turn);
         return row;
     }));
     one('measure').disabled = cards.length === 0;
 }
 
+/** What is shown is not of these cards any more. */
+function hideResult() {
+    index = -1;
+    one('result').hidden = one('correction').hidden = true;
+}
+
 async function addCards(files) {
-    const added = [];
-    for (const file of files) added.push({...await readPicture(file), rotation: 0});
+    const added = [], known = new Set(cards.map(card => card.identity));
+    for (const file of files) {
+        const identity = `${file.name} ${file.size} ${file.lastModified}`;
+        if (known.has(identity)) continue;
+        known.add(identity);
+        added.push({...await readPicture(file), rotation: 0, identity});
+    }
+    if (added.length === 0) return;
     const first = cards[0] ?? added[0];
     const other = added.find(card => card.width !== first.width || card.height !== first.height);
     if (other) {
@@ -83,6 +99,7 @@ async function addCards(files) {
         one('response').value = first.isLinear ? 'linear' : 'typical';
     }
     cards.push(...added);
+    hideResult();
     showCards();
 }
 
@@ -93,6 +110,7 @@ async function measure() {
     }
     const {usable, findings} = await call('fit', {
         key: keyOfFields(), response: one('response').value, lossy: cards.some(card => card.isLossy),
+        radial: one('radial').checked,
     });
     frame = {width: cards[0].width, height: cards[0].height};
     one('entries').hidden = true;
@@ -119,7 +137,7 @@ function nameOf({maker, camera, lens, focal_mm: focal, aperture, distance_m: dis
 }
 
 async function openProfile(file) {
-    const bytes = new Uint8Array(await file.arrayBuffer());
+    const bytes = await bytesOf(file, file.name);
     let profiles;
     try {
         ({profiles} = await call('import', {bytes, name: file.name}));
@@ -134,12 +152,14 @@ async function openProfile(file) {
 
 async function showProfile(number) {
     const {key, doubt, curves} = await call('profile', {index: number, ...frame});
+    const chart = drawChart(curves), corner = cornerText(curves); // before anything changes
     index = number;
+    if (!one('entries').hidden) one('entries').value = number;
     showKey(key);
     one('rendering').hidden = key.rendered;
-    one('corner').textContent = cornerText(curves);
+    one('corner').textContent = corner;
     one('doubt').textContent = doubt ? `Doubt: ${doubt}.` : '';
-    one('chart').replaceChildren(drawChart(curves));
+    one('chart').replaceChildren(chart);
     one('result').hidden = one('correction').hidden = false;
     if (picture) await correct();
 }
@@ -147,7 +167,9 @@ async function showProfile(number) {
 async function saveProfile() {
     await call('setKey', {index, key: keyOfFields()});
     const format = one('format').value, ending = one('format').selectedOptions[0].dataset.ending;
-    const bytes = await call('export', {index, format, ...frame});
+    const bytes = await call('export', {index, format, ...frame}).catch(({message}) => {
+        throw new Error(`the profile: ${message.replace(/^profile 0: /, '').replace(/set key\.\w+/, 'fill in the field')}`);
+    });
     save(new Blob([bytes]), `${nameOf(keyOfFields()).replace(/[^\p{L}\p{N}.]+/gu, '-')}.${ending}`);
 }
 
@@ -161,36 +183,45 @@ function save(blob, name) {
 
 // ---- A picture ----
 
-function show(canvas, pixels) {
-    canvas.width = picture.width, canvas.height = picture.height;
-    canvas.getContext('2d').putImageData(new ImageData(new Uint8ClampedArray(pixels), picture.width), 0, 0);
+function show(canvas, {pixels, width, height}) {
+    canvas.width = width, canvas.height = height;
+    canvas.getContext('2d').putImageData(new ImageData(new Uint8ClampedArray(pixels), width), 0, 0);
 }
 
-async function correct() {
-    const {pixels, width, height} = picture;
-    const corrected = await call('correct', {
-        index, pixels, width, height, response: one('rendered').value, strength: Number(one('strength').value) / 100,
-    });
-    show(one('after'), corrected);
+/** The same pixels, made smaller if they are more than are shown. */
+function previewOf({pixels, width, height}) {
+    const share = Math.min(1, PREVIEW / Math.max(width, height));
+    if (share === 1) return {pixels, width, height};
+    const whole = new OffscreenCanvas(width, height), small = new OffscreenCanvas(width * share, height * share);
+    show(whole, {pixels, width, height});
+    const context = small.getContext('2d');
+    context.imageSmoothingQuality = 'high';
+    context.drawImage(whole, 0, 0, small.width, small.height);
+    return {pixels: context.getImageData(0, 0, small.width, small.height).data, width: small.width, height: small.height};
 }
+
+async function corrected({pixels, width, height}) {
+    const response = one('rendered').value, strength = Number(one('strength').value) / 100;
+    return {pixels: await call('correct', {index, pixels, width, height, response, strength}), width, height};
+}
+
+const correct = async () => show(one('after'), await corrected(picture.preview));
 
 async function openPicture(file) {
     const opened = await readPicture(file);
     if (opened.sample !== 0) throw new Error(`${file.name}: has 16 or 32 bits; give JPEG, WebP, AVIF or PNG of 8 bits`);
-    picture = opened;
-    show(one('before'), picture.pixels);
+    picture = {...opened, preview: previewOf(opened)};
+    show(one('before'), picture.preview);
     one('view').hidden = one('save-picture').hidden = false;
     one('view').style.aspectRatio = `${picture.width} / ${picture.height}`;
     await correct();
 }
 
-function savePicture() {
-    const kind = picture.isLossy ? ['image/jpeg', 'jpg'] : ['image/png', 'png'];
-    const name = picture.name.replace(/\.[^.]*$/, '');
-    return new Promise(done => one('after').toBlob(blob => {
-        save(blob, `${name}-corrected.${kind[1]}`);
-        done();
-    }, kind[0], 0.95));
+async function savePicture() {
+    const [type, ending] = picture.isLossy ? ['image/jpeg', 'jpg'] : ['image/png', 'png'];
+    const canvas = new OffscreenCanvas(1, 1);
+    show(canvas, await corrected(picture));
+    save(await canvas.convertToBlob({type, quality: 0.95}), `${picture.name.replace(/\.[^.]*$/, '')}-corrected.${ending}`);
 }
 
 // ---- Wiring ----
@@ -222,7 +253,13 @@ function accept(zone, open) {
 accept(one('open'), openFiles);
 accept(one('open-picture'), files => openPicture(files[0]));
 one('measure').onclick = () => run(measure);
-one('clear').onclick = () => { cards = []; showCards(); };
+one('clear').onclick = () => run(() => {
+    cards = [];
+    showKey({});
+    hideResult();
+    showCards();
+});
+one('response').onchange = () => { if (cards.length) hideResult(); };
 one('entries').onchange = () => run(() => showProfile(Number(one('entries').value)));
 one('strength').onchange = one('rendered').onchange = () => run(async () => { if (picture) await correct(); });
 one('split').oninput = () => one('view').style.setProperty('--split', `${one('split').value}%`);
@@ -233,7 +270,7 @@ run(async () => {
     one('version').textContent = await call('version');
     for (const {name, about} of await call('formats')) {
         const option = new Option(`${name}: ${about}`, name);
-        option.dataset.ending = about.match(/\.([a-z0-9_]+)/i)?.[1] ?? 'txt';
+        option.dataset.ending = about.match(/\.([a-z0-9]+)[,)]/i)?.[1] ?? 'txt';
         one('format').add(option);
     }
 });

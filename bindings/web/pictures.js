@@ -12,9 +12,18 @@ const isJpeg = bytes => bytes[0] === 0xff && bytes[1] === 0xd8;
 const isPng16 = bytes => hasPngSignature(bytes) && bytes[24] === 16;
 const isTiff = bytes => ['II*\0', 'MM\0*'].includes(String.fromCharCode(...bytes.subarray(0, 4)));
 
+/** The bytes of a file, or of a part of it. */
+export async function bytesOf(blob, name) {
+    try {
+        return new Uint8Array(await blob.arrayBuffer());
+    } catch {
+        throw new Error(`${name}: cannot be read; if it is a folder, drop the files in it`);
+    }
+}
+
 /** Whether a file is a picture, by its first bytes; JPEG, PNG, TIFF, WebP and AVIF are. */
 export async function isPicture(file) {
-    const bytes = new Uint8Array(await file.slice(0, 32).arrayBuffer());
+    const bytes = await bytesOf(file.slice(0, 32), file.name);
     const at = (offset, text) => String.fromCharCode(...bytes.subarray(offset, offset + text.length)) === text;
     return isJpeg(bytes) || hasPngSignature(bytes) || isTiff(bytes) || at(8, 'WEBP') || at(4, 'ftypavif');
 }
@@ -45,6 +54,7 @@ function toRgba({width, height, data, channels}) {
 
 function decodedTiff(bytes) {
     const page = decodeTiff(bytes)[0];
+    if (page.get('NewSubfileType') & 1) throw new Error('camera raw: only its preview can be decoded; develop it first');
     if (!SAMPLES.has(page.data.constructor)) throw new Error(`samples of ${page.bitsPerSample} bits`);
     return {width: page.width, height: page.height, data: page.data, channels: page.samplesPerPixel};
 }
@@ -84,8 +94,8 @@ async function metadataOf(bytes) {
 
 /** {name, width, height, sample, pixels, isLossy, isLinear, key, ev}: pixels are RGBA; isLinear is a guess. */
 export async function readPicture(file) {
+    const bytes = await bytesOf(file, file.name);
     try {
-        const bytes = new Uint8Array(await file.arrayBuffer());
         const decoded = isTiff(bytes) ? decodedTiff(bytes)
             : isPng16(bytes) ? decodePng(bytes)
                 : await decodedByBrowser(isJpeg(bytes) ? withoutExif(bytes) : file);

@@ -8,10 +8,14 @@ async function start() {
     return makeLibrary({wasmBinary: await new Response(stream).arrayBuffer(), locateFile: name => name});
 }
 
-/** Calls a function that answers with JSON. Arguments are numbers and strings. */
+/** Calls a function that answers with JSON. Arguments are numbers and strings; these may be too long for the stack. */
 function ask(library, name, ...given) {
-    const types = given.map(value => (typeof value === 'string' ? 'string' : 'number'));
-    const answer = JSON.parse(library.ccall(name, 'string', types, given));
+    const at = given.findIndex(value => typeof value === 'string');
+    if (at >= 0) {
+        return withBytes(library, new TextEncoder().encode(`${given[at]}\0`),
+            address => ask(library, name, ...given.slice(0, at), address, ...given.slice(at + 1)));
+    }
+    const answer = JSON.parse(library.UTF8ToString(library[`_${name}`](...given)));
     if (answer.error) throw new Error(answer.error);
     return answer;
 }
@@ -19,7 +23,7 @@ function ask(library, name, ...given) {
 /** What `work` makes of the bytes of an array in the library's memory. */
 function withBytes(library, array, work) {
     const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
-    const address = library._malloc(Math.max(bytes.length, 1));
+    const address = library._malloc(Math.max(bytes.length, 1)) >>> 0;
     if (!address) throw new Error('there is not enough memory; use smaller pictures, or fewer');
     try {
         library.HEAPU8.set(bytes, address);
@@ -46,7 +50,7 @@ const calls = {
     }),
     export: (library, {index, format, width, height}) => {
         const {bytes} = ask(library, 'page_export', index, format, width, height);
-        const address = library.ccall('page_file', 'number', [], []);
+        const address = library._page_file() >>> 0;
         return library.HEAPU8.slice(address, address + bytes);
     },
 };

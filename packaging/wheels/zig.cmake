@@ -12,6 +12,8 @@ else()
 endif()
 set(CMAKE_C_COMPILER ${LENSPROF_ZIG} cc -target ${LENSPROF_ZIG_TARGET})
 set(CMAKE_CXX_COMPILER ${LENSPROF_ZIG} c++ -target ${LENSPROF_ZIG_TARGET})
+set(CMAKE_ASM_COMPILER ${LENSPROF_ZIG})
+set(CMAKE_ASM_COMPILER_ARG1 "cc -target ${LENSPROF_ZIG_TARGET}")
 # CMake calls each of these by one name.
 foreach(tool ar ranlib rc)
   set(wrapper ${CMAKE_BINARY_DIR}/zig-${tool})

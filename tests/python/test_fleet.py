@@ -70,6 +70,21 @@ class Fleet(unittest.TestCase):
         self.assertNotEqual(fleet.name_of("/a/walk"), fleet.name_of("/b/walk"))
         self.assertEqual(fleet.name_of("s3://bucket/a/walk/"), fleet.name_of("s3://bucket/a/walk"))
         self.assertEqual(fleet.name_of("s3://bucket/a/walk/")[:5], "walk-")
+        self.assertEqual(fleet.name_of("walk"), fleet.name_of("file://" + os.path.abspath("walk")))
+
+    def test_one_address_is_no_list(self):
+        for job in (lambda: fleet.calibrate_sequences(self.sequences[0], self.plain, None),
+                    lambda: fleet.correct_all(self.sequences[0], self.plain, "x.db", None),
+                    lambda: fleet.correct_pictures(self.sequences[0], self.plain, "x.db")):
+            self.assertRaisesRegex(TypeError, "give a list", job)
+
+    def test_missing_database_is_a_failure_whatever_exists(self):
+        picture = next(pathlib.Path(self.sequences[0]).glob("*.png"))
+        output = str(self.folder / "once")
+        for database, state in ((fleet.stores_of(self.plain)[0], "done"), (str(self.folder / "none.db"), "failed")):
+            rows = fleet.correct_pictures([str(picture)], output, database)
+            self.assertEqual([row["state"] for row in rows], [state])
+        self.assertIn("none.db", rows[0]["error"])
 
     def test_damaged_row_is_done_again(self):
         output = self.folder / "damaged"

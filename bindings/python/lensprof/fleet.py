@@ -30,7 +30,10 @@ STATES = ("done", "not usable", "failed")
 
 
 def name_of(address: str) -> str:
-    """A name for the files of a sequence, which no other address has: its last part, and a hash of all of it."""
+    """A name for the files of a sequence, which no other address has: its last part, and a hash of all of it. A local
+    folder has one name, whether its path is relative, absolute, or an address (file://)."""
+    if "://" not in address or address.startswith("file://"):
+        address = os.path.abspath(address.removeprefix("file://"))
     address = address.rstrip("/")
     return f"{address.rsplit('/', 1)[-1]}-{hashlib.sha256(address.encode()).hexdigest()[:12]}"
 
@@ -163,14 +166,17 @@ def _put_results(calibration: Calibration, name: str, output: str, work: str) ->
 def correct_pictures(pictures: Sequence[str], output: str, database: str, **options: Any) -> list[Row]:
     """Corrected copies of pictures in `output`, by the profiles of a database, with the options of
     `lensprof.correct_files`; a row for each: picture, copy, state (done, failed), error, seconds. A copy that exists is
-    not made again."""
+    not made again, also if the database or the options are others: give those another output."""
     rows = []
+    pictures = _list_of(pictures)
     with local_copy(database) as profiles, tempfile.TemporaryDirectory(prefix="lensprof-") as work:
         for picture in pictures:
             copy = _below(output, _copy_name(picture))
             row: Row = {"picture": picture, "copy": copy, "state": "done", "error": ""}
 
             def job(row: Row, picture: str = picture, copy: str = copy) -> None:
+                with Store(profiles):  # a wrong name is an error, whatever copies exist
+                    pass
                 system, path = _file_system(copy)
                 if system.exists(path):
                     return
@@ -214,10 +220,17 @@ def write_table(rows: Sequence[Row], address: str) -> None:
         put_file(path, address)
 
 
+def _list_of(addresses: Sequence[str]) -> list[str]:
+    if isinstance(addresses, str):
+        raise TypeError(f"{addresses}: is one address; give a list of them")
+    return list(addresses)
+
+
 def calibrate_sequences(sequences: Sequence[str], output: str, client: Any, **options: Any) -> list[Row]:
     """calibrate_sequence on the workers of a Dask client. Writes output/calibrations.parquet, and joins the databases in
     output/profiles.db. The rows are in the order of the sequences; a worker that dies becomes a row, too."""
-    futures = client.map(calibrate_sequence, list(sequences), output=output, pure=False, retries=2, **options)
+    sequences = _list_of(sequences)
+    futures = client.map(calibrate_sequence, sequences, output=output, pure=False, retries=2, **options)
     rows = [_row_of(future, {"sequence": sequence, "name": name_of(sequence), "images": 0, "profiles": 0,
                              "corner": None, "findings": ""}) for future, sequence in zip(futures, sequences)]
     write_table(rows, _below(output, "calibrations.parquet"))
@@ -231,7 +244,8 @@ def calibrate_sequences(sequences: Sequence[str], output: str, client: Any, **op
 def correct_all(pictures: Sequence[str], output: str, database: str, client: Any, batch: int = 32,
                 **options: Any) -> list[Row]:
     """correct_pictures on the workers of a Dask client, `batch` pictures a task. Writes output/corrections.parquet."""
-    batches = [list(pictures[i:i + batch]) for i in range(0, len(pictures), batch)]
+    pictures = _list_of(pictures)
+    batches = [pictures[i:i + batch] for i in range(0, len(pictures), batch)]
     futures = client.map(correct_pictures, batches, output=output, database=database, pure=False, retries=2, **options)
     rows: list[Row] = []
     for future, part in zip(futures, batches):

@@ -14,7 +14,7 @@ std::string option_of(const std::string &name) {
         {"card", "--card"},
         {"crop_factor", "--key crop-factor=NUMBER"},
         {"dark", "--dark"},
-        {"database", "--db FILE"},
+        {"databases", "--db FILE"},
         {"distance", "--key distance"},
         {"doubtful", "`lensprof apply --key doubtful=yes`"},
         {"ev", "--ev"},

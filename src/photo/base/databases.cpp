@@ -49,6 +49,11 @@ std::vector<std::string> databases_of(const std::vector<std::string> &named) {
     return files;
 }
 
+std::vector<std::string> existing_databases(const std::vector<std::string> &named) {
+    if (!named.empty() || !user_store_path().empty()) return existing(databases_of(named));
+    return existing({installed_database()});
+}
+
 std::vector<std::string> existing(std::vector<std::string> databases) {
     const auto is_missing = [](const std::string &file) { return !path_exists(file); };
     databases.erase(std::remove_if(databases.begin(), databases.end(), is_missing), databases.end());

@@ -18,6 +18,9 @@ std::vector<std::string> databases_of(const std::vector<std::string> &named);
 // Those of them that exist.
 std::vector<std::string> existing(std::vector<std::string> databases);
 
+// The same, for what can do without one: a process without a home folder has the installed one.
+std::vector<std::string> existing_databases(const std::vector<std::string> &named);
+
 // Opens databases for reading. The files must exist.
 class Databases {
 public:

@@ -51,13 +51,18 @@ void check_named(lensprof_status status, const std::string &item, const lensprof
     throw Failure(status, is_named ? text : item + ": " + text, reason_of(status));
 }
 
-std::string store_path(const std::string &path) {
-    if (!path.empty()) return path;
+std::string user_store_path() {
     const char *data = std::getenv("XDG_DATA_HOME"), *home = std::getenv("HOME");
     if (data && data[0] == '/') return std::string(data) + "/lensprof/profiles.db";
     if (home && home[0] == '/') return std::string(home) + "/.local/share/lensprof/profiles.db";
+    return {};
+}
+
+std::string store_path(const std::string &path) {
+    const std::string file = path.empty() ? user_store_path() : path;
+    if (!file.empty()) return file;
     throw Failure(LENSPROF_ERROR_ARGUMENT,
-                  "no home folder for the profile database; give a database with " + option_name("database"));
+                  "no home folder for the profile database; give a database with " + option_name("databases"));
 }
 
 void require_folder(const std::string &path) {

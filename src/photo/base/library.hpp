@@ -57,6 +57,9 @@ struct StoredProfile {
 Store open_store(const std::string &path, lensprof_store_mode mode);
 std::string store_path(const std::string &path);
 
+// That of the user's own database; empty for a process without a home folder.
+std::string user_store_path();
+
 // Failure (store) if the folder of a named database does not exist.
 void require_folder(const std::string &path);
 

@@ -17,7 +17,7 @@ constexpr uint64_t max_file_bytes = uint64_t{64} << 20;  // that the library rea
 
 // The databases that exist, and always the installed one, which has the cameras.
 std::vector<std::string> camera_tables(const std::vector<std::string> &dbs) {
-    std::vector<std::string> files = existing(databases_of(dbs));
+    std::vector<std::string> files = existing_databases(dbs);
     const std::string installed = installed_database();
     if (!installed.empty() && std::find(files.begin(), files.end(), installed) == files.end())
         files.push_back(installed);

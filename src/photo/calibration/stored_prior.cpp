@@ -134,8 +134,9 @@ lensprof_profile_key offset_key(lensprof_profile_key key, const lensprof_profile
 
 EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_requested, const lensprof_profile_key &key,
                                  const std::string &source) {
-    auto files = databases_of(o.dbs);
-    if (!path_exists(files.front())) files.erase(files.begin());  // it is created when the profile is stored
+    auto files = o.dbs.empty() ? existing_databases({}) : o.dbs;
+    if (!files.empty() && !path_exists(files.front()))
+        files.erase(files.begin());  // it is created when the profile is stored
     auto profile = new_profile();
     const std::string source_name = source_of(source);
     if (id) {
@@ -158,7 +159,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_requ
     options.response_alone = 1;
     if (databases.look_up(key, options, *profile, lookup) != LENSPROF_OK)
         return {0, nullptr, is_requested ? "no profile is stored for this lens and setting" : ""};
-    const bool is_own = is_same_file(databases.file(lookup.falloff_store), store_path(o.db));
+    const bool is_own = is_same_file(databases.file(lookup.falloff_store), o.db.empty() ? user_store_path() : o.db);
     if (lookup.exact && is_own && has_uncertainty(*profile))
         return single_prior(databases.store(lookup.falloff_store), lookup.id[0], std::move(profile), source_name,
                             is_requested);

@@ -108,7 +108,7 @@ bool are_linear(const CardOptions &o, const std::vector<PictureMetadata> &metada
 // The response that the databases have for the camera of a rendered picture. Failure without one.
 std::vector<lensprof_response> stored_response(const StoreOptions &o, const PictureMetadata &metadata,
                                                const std::string &file, Events &events) {
-    const std::vector<std::string> files = existing(databases_of(o.dbs));
+    const std::vector<std::string> files = existing_databases(o.dbs);
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     options.response_alone = 1;

@@ -152,9 +152,9 @@ std::optional<Candidate> stored_candidate(const MeasureOptions &o, const Frame &
     const lensprof_profile_key &key = frame.metadata.key;
     if (!*key.camera_model) return std::nullopt;
     StoreOptions store;
-    store.dbs = databases_of(o.dbs);
-    if (existing(store.dbs).empty()) return std::nullopt;
-    store.dbs = existing(store.dbs), store.db = store.dbs[0], store.no_store = true;
+    store.dbs = existing_databases(o.dbs);
+    if (store.dbs.empty()) return std::nullopt;
+    store.db = store.dbs[0], store.no_store = true;
     const EarlierProfile found = find_stored_prior(store, 0, false, key, "");
     if (!found.profile || found.profile->response[0].kind == LENSPROF_RESPONSE_LINEAR) return std::nullopt;
     const lensprof_profile &profile = *found.profile;

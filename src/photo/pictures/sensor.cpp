@@ -93,8 +93,7 @@ double crop_factor_in_tables(const Databases &databases, const lensprof_profile_
 
 double crop_factor_in_files(const std::vector<std::string> &named, const lensprof_profile_key &key,
                             PictureSize picture) {
-    for (const std::string &file : databases_of(named)) {
-        if (!path_exists(file)) continue;
+    for (const std::string &file : existing_databases(named)) {
         try {
             const double crop = crop_factor_in_table(open_store(file, LENSPROF_STORE_READ).get(), key, picture);
             if (crop != LENSPROF_UNKNOWN) return crop;
