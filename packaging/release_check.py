@@ -40,7 +40,7 @@ VERSIONS = (
 )
 WHEELS = ("manylinux_2_17_x86_64", "manylinux_2_17_aarch64", "musllinux_1_2_x86_64", "macosx_11_0_arm64", "macosx_11_0_x86_64",
           "win_amd64")  # fmt: skip
-PHOTO_WHEELS = ("manylinux_2_17_x86_64", "manylinux_2_17_aarch64")
+PHOTO_WHEELS = ("manylinux_2_17_x86_64",)
 
 
 class NotDone(Exception):

@@ -46,7 +46,7 @@ TARGETS = {
     "macos-x86_64": Target("x86_64-macos.11.0", ("macosx_11_0_x86_64",)),
     "windows-x86_64": Target("x86_64-windows-gnu", ("win_amd64",)),
 }
-PHOTO_TARGETS = ("linux-x86_64", "linux-aarch64")
+PHOTO_TARGETS = ("linux-x86_64",)
 
 
 def run(*command: object, **options) -> None:

@@ -42,7 +42,7 @@ OPTIONS = {
     **{f"BUILD_{name}": "OFF" for name in ("opencv_apps", "TESTS", "PERF_TESTS", "EXAMPLES", "JAVA")},
     **{f"WITH_{name}": "OFF" for name in (
         "IPP", "ITT", "OPENCL", "LAPACK", "EIGEN", "PROTOBUF", "QUIRC", "TBB", "WEBP", "OPENEXR", "OPENJPEG", "JASPER", "FFMPEG",
-        "GSTREAMER", "V4L", "GTK", "1394", "ADE")},
+        "GSTREAMER", "V4L", "GTK", "1394", "ADE", "CAROTENE")},
 }  # fmt: skip
 
 
