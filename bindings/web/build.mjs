@@ -23,10 +23,8 @@ async function bundle(entry, texts) {
     };
     const {outputFiles} = await build({
         entryPoints: [join(here, entry)], bundle: true, minify: true, write: false, format: 'iife',
-        target: 'es2022',
-        charset: 'utf8', legalComments: 'eof', plugins: [given], alias: {library: join(library, 'library.mjs')},
-        define: {'import.meta.url': 'self.location.href'},
-        logLevel: 'warning',
+        target: 'es2022', charset: 'utf8', legalComments: 'eof', plugins: [given], logLevel: 'warning',
+        alias: {library: join(library, 'library.mjs')}, define: {'import.meta.url': 'self.location.href'},
     });
     return outputFiles[0].text;
 }

@@ -238,14 +238,13 @@ Json fit(const Json &wanted) {
     options.threads = 1;
     options.vignettings = wanted.value("lossy", false) ? 1 : 0;  // JPEG rounds colours over blocks of pixels
     if (wanted.value("radial", false)) options.grid = LENSPROF_FLAT_GRID_NONE;
+    options.own_light = 1;
     std::vector<lensprof_flat_image> images;
     for (const Card &card : cards) {
         images.push_back(card.image);
         images.back().shot = static_cast<uint32_t>(images.size() - 1);
-        options.own_light = 1;
-    }
-    for (const Card &card : cards)
         if (card.image.rotation_deg != 0.0) options.own_light = 0;  // one light, which the rotation separates
+    }
     lensprof_error error{};
     lensprof_flat *made = nullptr;
     check(lensprof_fit_flat(&options, images.data(), static_cast<uint32_t>(images.size()), nullptr, 0, &made, &error),

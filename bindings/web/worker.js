@@ -34,9 +34,9 @@ function withBytes(library, array, work) {
 }
 
 const calls = {
-    version: library => library.ccall('page_version', 'string', [], []),
+    version: library => library.UTF8ToString(library._page_version()),
     formats: library => ask(library, 'page_formats'),
-    clearCards: library => library.ccall('page_clear_cards', null, [], []),
+    clearCards: library => library._page_clear_cards(),
     addCard: (library, {pixels, width, height, sample, ev, rotation}) => withBytes(library, pixels,
         address => ask(library, 'page_add_card', address, width, height, sample, ev, rotation)),
     fit: (library, options) => ask(library, 'page_fit', JSON.stringify(options)),

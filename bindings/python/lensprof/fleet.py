@@ -175,10 +175,9 @@ def correct_pictures(pictures: Sequence[str], output: str, database: str, **opti
             row: Row = {"picture": picture, "copy": copy, "state": "done", "error": ""}
 
             def job(row: Row, picture: str = picture, copy: str = copy) -> None:
-                with Store(profiles):  # a wrong name is an error, whatever copies exist
-                    pass
                 system, path = _file_system(copy)
                 if system.exists(path):
+                    Store(profiles).close()  # a wrong name is an error, whatever copies exist
                     return
                 made = os.path.join(work, path.rsplit("/", 1)[-1])
                 with local_copy(picture) as source:
